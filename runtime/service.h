@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One way to be a service: a class that is built from a ServiceContext and has step(now). run_service() is its only main loop;
+// a replay or the robot in a box construct the same class and call step() themselves.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "base/clock.h"
+#include "runtime/bus.h"
+#include "runtime/config.h"
+#include "runtime/health.h"
+#include "runtime/journal.h"
+
+namespace runtime {
+
+/// What a service may use; outlives it.
+struct ServiceContext {
+  Bus& bus;
+  ConfigTable config;  ///< the service's own top-level table
+  Health& health;
+  Journal& journal;
+};
+
+class Service {
+ public:
+  virtual ~Service() = default;
+  /// Takes what is in the mailboxes, works, publishes. Called after every drain and at least every 50 ms.
+  virtual void step(const base::Now& now) noexcept = 0;
+};
+
+/// Name and number of a service, and how to build it.
+struct ServiceDescription {
+  std::string name;        ///< also its top-level table in the configuration, e.g. "gng"
+  std::int8_t number = 0;  ///< health_t SERVICE_*
+  std::string purpose;     ///< one line for --help
+  std::function<std::unique_ptr<Service>(ServiceContext)> make;
+};
+
+inline constexpr int kExitAsked = 0;
+inline constexpr int kExitConfiguration = 2;  ///< wrong arguments or configuration: a restart will not help
+inline constexpr int kExitDevice = 3;         ///< LCM or a device is missing: a restart may help
+inline constexpr int kExitInternal = 70;
+
+/// Arguments -> configuration -> bus -> construction -> loop -> exit code. SIGTERM and SIGINT end it with 0.
+int run_service(int argc, char** argv, const ServiceDescription& description);
+
+/// Top-level tables that a configuration file may hold.
+const std::vector<std::string>& known_config_tables();
+
+}  // namespace runtime
