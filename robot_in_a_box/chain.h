@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The perception services in one process on LCM's in-memory transport, in virtual time: the same classes as in the live processes,
+// stepped after every message. Output is a function of configuration and input alone.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/service.h"
+
+namespace robot_in_a_box {
+
+class Chain {
+ public:
+  /// Called with every message that a service publishes on one of the recorded channels.
+  using Output = std::function<void(const char* channel, const void* bytes, std::size_t num_bytes)>;
+
+  /// Throws runtime::ConfigError.
+  explicit Chain(const runtime::Config& config);
+  ~Chain();
+  Chain(const Chain&) = delete;
+  Chain& operator=(const Chain&) = delete;
+
+  /// Records what the chain publishes on these channels.
+  void record(const std::vector<std::string>& channels, Output output);
+
+  /// Delivers one message as if it had arrived at this time and lets every service work until nothing is left to do.
+  void feed(const std::string& channel, const void* bytes, std::size_t num_bytes, std::int64_t utime_us);
+
+  /// Messages that a service refused, over all causes.
+  std::int64_t num_rejected() const;
+
+ private:
+  struct Member;
+  struct Recorder;
+  void work(const base::Now& now);
+
+  std::shared_ptr<lcm_t> connection_;
+  std::vector<std::unique_ptr<Member>> members_;
+  std::unique_ptr<Recorder> recorder_;
+};
+
+}  // namespace robot_in_a_box
