@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The winner search against a loop over all nodes: same slots, same bits, on every instruction set
+// that this machine offers.
+#include "ddgng/winner_search.h"
+
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include "base/rng.h"
+
+namespace ddgng {
+namespace {
+
+Winners brute_force(const Graph& graph, const Eigen::Vector3f& v) {
+  constexpr float kMax = std::numeric_limits<float>::max();
+  Winners winners{-1, -1, kMax, kMax};
+  for (int i = 0; i < graph.num_slots(); ++i) {
+    if (!graph.alive(i)) continue;
+    const Eigen::Vector3f d = graph.position_m(i) - v;
+    const float m2 = d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+    if (m2 < winners.first_m2) {
+      winners.second = winners.first;
+      winners.second_m2 = winners.first_m2;
+      winners.first = i;
+      winners.first_m2 = m2;
+    } else if (m2 < winners.second_m2) {
+      winners.second = i;
+      winners.second_m2 = m2;
+    }
+  }
+  return winners;
+}
+
+enum class Shape { kUniform, kClusters, kDuplicates, kCollinear, kLattice, kIdentical };
+
+Eigen::Vector3f draw(Shape shape, base::Rng& rng) {
+  const auto u = [&rng] { return static_cast<float>(rng.uniform()); };
+  switch (shape) {
+    case Shape::kUniform:
+      return {4 * u(), 4 * u(), 4 * u()};
+    case Shape::kClusters: {
+      const auto c = static_cast<float>(rng.below(4));
+      return {c + 0.01F * u(), 0.01F * u() - c, 0.001F * u()};
+    }
+    case Shape::kDuplicates: {
+      const auto c = static_cast<float>(rng.below(5));
+      return {c, 0.5F * c, -c};
+    }
+    case Shape::kCollinear:
+      return {u(), 0.0F, 1.0F};
+    case Shape::kLattice:  // many exact ties
+      return {static_cast<float>(rng.below(4)), static_cast<float>(rng.below(4)),
+              static_cast<float>(rng.below(4))};
+    case Shape::kIdentical:
+      break;
+  }
+  return {1.0F, 2.0F, 3.0F};
+}
+
+constexpr Shape kShapes[] = {Shape::kUniform,   Shape::kClusters, Shape::kDuplicates,
+                             Shape::kCollinear, Shape::kLattice,  Shape::kIdentical};
+
+Graph random_graph(Shape shape, int num_nodes, base::Rng& rng) {
+  Graph graph(num_nodes + 8, 4);
+  for (int i = 0; i < num_nodes + 8; ++i) graph.add_node(draw(shape, rng));
+  while (graph.num_nodes() > num_nodes) {  // holes
+    const auto slot = static_cast<int>(rng.below(static_cast<std::uint32_t>(num_nodes + 8)));
+    if (graph.alive(slot)) graph.remove_node(slot);
+  }
+  return graph;
+}
+
+void expect_equal(const Winners& expected, const Winners& found) {
+  ASSERT_EQ(expected.first, found.first);
+  ASSERT_EQ(expected.second, found.second);
+  ASSERT_EQ(expected.first_m2, found.first_m2);
+  ASSERT_EQ(expected.second_m2, found.second_m2);
+}
+
+// Runs the test body once per instruction set of this machine.
+class WinnerSearch : public testing::TestWithParam<std::int64_t> {
+ protected:
+  void SetUp() override { hwy::SetSupportedTargetsForTest(GetParam()); }
+  void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
+};
+
+// Two nodes, three nodes, ... around the lanes of a vector: the answer is that of a plain loop.
+TEST_P(WinnerSearch, EqualsBruteForceForFewNodes) {
+  base::Rng rng(1);
+  for (int num_nodes = 2; num_nodes < 70; ++num_nodes) {
+    for (const Shape shape : kShapes) {
+      const Graph graph = random_graph(shape, num_nodes, rng);
+      for (int i = 0; i < 20; ++i) {
+        const Eigen::Vector3f v = draw(shape, rng);
+        expect_equal(brute_force(graph, v), nearest_two_linear(graph, v));
+      }
+    }
+  }
+}
+
+// The same for a thousand nodes, also for signals far away from all of them.
+TEST_P(WinnerSearch, EqualsBruteForceForManyNodes) {
+  base::Rng rng(2);
+  for (const Shape shape : kShapes) {
+    const Graph graph = random_graph(shape, 1000, rng);
+    for (int i = 0; i < 500; ++i) {
+      const Eigen::Vector3f v = (i % 5 == 0 ? 1000.0F : 1.0F) * draw(kShapes[i % 6], rng);
+      expect_equal(brute_force(graph, v), nearest_two_linear(graph, v));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllTargets, WinnerSearch,
+                         testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
+                         [](const auto& target) {
+                           return std::string(hwy::TargetName(target.param));
+                         });
+
+}  // namespace
+}  // namespace ddgng
