@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ddgng/planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "base/rng.h"
+#include "ddgng/classification.h"
+#include "ddgng/heads.h"
+
+namespace ddgng {
+
+/// Sums of points for a total-least-squares plane.
+class PlaneFinder::Sums {
+ public:
+  void add(const Eigen::Vector3d& p) {
+    if (size_ == 0) origin_m_ = p;
+    const Eigen::Vector3d offset_m = p - origin_m_;
+    sum_m_ += offset_m;
+    outer_m2_ += offset_m * offset_m.transpose();
+    ++size_;
+  }
+  int size() const { return size_; }
+  Fit plane() const {
+    const double weight = 1.0 / size_;
+    const Eigen::Vector3d mean_m = sum_m_ * weight;
+    const Eigen::Matrix3d covariance_m2 = outer_m2_ * weight - mean_m * mean_m.transpose();
+    // compute(), not computeDirect(): only square roots, so the same bits everywhere.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance_m2);
+    return {solver.eigenvectors().col(0), origin_m_ + mean_m};
+  }
+
+ private:
+  int size_ = 0;
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d sum_m_ = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d outer_m2_ = Eigen::Matrix3d::Zero();
+};
+
+PlaneFinder::PlaneFinder(const StructureParams& params, int max_nodes, int max_faces)
+    : params_(params), duplicate_cosine_(cosine_of_degrees(params.duplicate_angle_deg)) {
+  sample_m_.reserve(params.plane_sample_points);
+  large_labels_.reserve(max_faces / std::max(1, params.large_faces) + 1);
+  counted_for_.reserve(max_nodes);
+}
+
+void PlaneFinder::build(const CloudView& cloud, Topology& topology) {
+  topology.planes.clear();
+  topology.node_plane.assign(topology.num_nodes(), -1);
+  const auto heads_m = mean_head_position(cloud);
+  if (!heads_m || cloud.size() < static_cast<std::size_t>(params_.plane_sample_points)) return;
+  heads_m_ = heads_m->cast<double>();
+
+  sample_points(cloud);
+  if (params_.floor_height_known) {
+    const Eigen::Vector3d below_m(heads_m_.x(), heads_m_.y(), params_.floor_height_m);
+    add_if_sound({Eigen::Vector3d::UnitZ(), below_m}, below_m, topology);
+  }
+  order_large_labels(topology);
+  counted_for_.assign(topology.num_nodes(), -1);
+  for (const int label : large_labels_) {
+    const Fit fit = fit_to_nodes(label, topology);
+    add_if_sound(refit_to_sample(fit), fit.mean_m, topology);
+  }
+  assign_nodes(topology);
+}
+
+void PlaneFinder::sample_points(const CloudView& cloud) {
+  base::Rng rng(params_.seed, cloud.sequence);
+  sample_m_.clear();
+  for (int i = 0; i < params_.plane_sample_points; ++i) {
+    const std::uint32_t point = rng.below(static_cast<std::uint32_t>(cloud.size()));
+    sample_m_.emplace_back(cloud.x_m[point], cloud.y_m[point], cloud.z_m[point]);
+  }
+}
+
+void PlaneFinder::order_large_labels(const Topology& topology) {
+  large_labels_.clear();
+  for (int label = 0; label < static_cast<int>(topology.labels.size()); ++label) {
+    if (is_large(params_, topology.labels[label])) large_labels_.push_back(label);
+  }
+  std::sort(large_labels_.begin(), large_labels_.end(), [&](int left, int right) {
+    const float left_m2 = topology.labels[left].area_m2;
+    const float right_m2 = topology.labels[right].area_m2;
+    return left_m2 > right_m2 || (left_m2 == right_m2 && left < right);
+  });
+}
+
+PlaneFinder::Fit PlaneFinder::fit_to_nodes(int label, const Topology& topology) {
+  Sums sums;
+  for (const Face& face : topology.faces) {
+    if (face.label != label) continue;
+    for (const int node : face.nodes) {
+      if (counted_for_[node] == label) continue;
+      counted_for_[node] = label;
+      sums.add(topology.node_m(node).cast<double>());
+    }
+  }
+  return sums.plane();
+}
+
+PlaneFinder::Fit PlaneFinder::refit_to_sample(Fit fit) const {
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    Sums sums;
+    for (const Eigen::Vector3d& p : sample_m_) {
+      if (std::abs(fit.distance_m(p)) < params_.plane_refit_distance_m) sums.add(p);
+    }
+    if (sums.size() < params_.plane_min_points) break;
+    fit = sums.plane();
+  }
+  return fit;
+}
+
+void PlaneFinder::add_if_sound(Fit fit, const Eigen::Vector3d& center_m, Topology& topology) const {
+  if (static_cast<int>(topology.planes.size()) >= params_.max_planes) return;
+  if (fit.distance_m(heads_m_) < 0.0) fit.normal = -fit.normal;
+  if (is_duplicate(fit, center_m, topology) || !is_supported_and_opaque(fit)) return;
+  Plane plane;
+  plane.normal = fit.normal.cast<float>();
+  plane.offset_m = static_cast<float>(fit.normal.dot(fit.mean_m));
+  plane.plane_class = classify_slope(params_, plane.normal);
+  topology.planes.push_back(plane);
+}
+
+// center_m: where the label lies; two planes are compared there.
+bool PlaneFinder::is_duplicate(const Fit& fit, const Eigen::Vector3d& center_m,
+                               const Topology& topology) const {
+  for (const Plane& plane : topology.planes) {
+    const Eigen::Vector3d normal = plane.normal.cast<double>();
+    if (std::abs(normal.dot(fit.normal)) > duplicate_cosine_ &&
+        std::abs(normal.dot(center_m) - plane.offset_m) < params_.duplicate_distance_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// A plane carries its share of the points, and few points lie behind it: the heads do not see
+// through it. The front of a ladder fails.
+bool PlaneFinder::is_supported_and_opaque(const Fit& fit) const {
+  float num_on = 0.0F;
+  float num_behind = 0.0F;
+  for (const Eigen::Vector3d& p : sample_m_) {
+    const double distance_m = fit.distance_m(p);
+    if (std::abs(distance_m) < params_.plane_on_distance_m) ++num_on;
+    if (distance_m < -params_.plane_behind_distance_m) ++num_behind;
+  }
+  return num_on >= params_.plane_min_support * static_cast<float>(sample_m_.size()) &&
+         num_behind <= params_.plane_max_behind * num_on;
+}
+
+// The nearest plane within the distance; ties to the first.
+void PlaneFinder::assign_nodes(Topology& topology) const {
+  const Eigen::Vector3f heads_m = heads_m_.cast<float>();
+  for (int node = 0; node < topology.num_nodes(); ++node) {
+    const Eigen::Vector3f p = topology.node_m(node);
+    float nearest_m =
+        params_.node_plane_distance_m + params_.node_plane_per_range * (p - heads_m).norm();
+    for (int i = 0; i < static_cast<int>(topology.planes.size()); ++i) {
+      const Plane& plane = topology.planes[i];
+      const float distance_m = std::abs(plane.normal.dot(p) - plane.offset_m);
+      if (!(distance_m < nearest_m)) continue;
+      nearest_m = distance_m;
+      topology.node_plane[node] = i;
+    }
+    const int plane = topology.node_plane[node];
+    topology.node_class[node] = plane < 0 ? Class::kObstacle : topology.planes[plane].plane_class;
+  }
+}
+
+}  // namespace ddgng

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Large labels refitted to points of the cloud, and the nodes that lie on them. Beyond the paper:
+// labels scatter where nodes are dense, planes do not. A ladder's front is no plane, because the
+// heads see through it (opaque test).
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "ddgng/cloud.h"
+#include "ddgng/structure_params.h"
+#include "ddgng/topology.h"
+
+namespace ddgng {
+
+class PlaneFinder {
+ public:
+  PlaneFinder(const StructureParams& params, int max_nodes, int max_faces);
+
+  /// Fills topology.planes and node_plane; nodes on a plane take its class, the others become
+  /// obstacles. A cloud too small to refit to gives no plane and leaves node_class as it is.
+  void build(const CloudView& cloud, Topology& topology);
+
+ private:
+  struct Fit {
+    Eigen::Vector3d normal;
+    Eigen::Vector3d mean_m;
+    double distance_m(const Eigen::Vector3d& p) const { return normal.dot(p - mean_m); }
+  };
+  class Sums;
+
+  void sample_points(const CloudView& cloud);
+  void order_large_labels(const Topology& topology);
+  Fit fit_to_nodes(int label_index, const Topology& topology);
+  Fit refit_to_sample(Fit fit) const;
+  bool is_duplicate(const Fit& fit, const Eigen::Vector3d& center_m,
+                    const Topology& topology) const;
+  bool is_supported_and_opaque(const Fit& fit) const;
+  void add_if_sound(Fit fit, const Eigen::Vector3d& center_m, Topology& topology) const;
+  void assign_nodes(Topology& topology) const;
+
+  StructureParams params_;
+  double duplicate_cosine_;
+  Eigen::Vector3d heads_m_ = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> sample_m_;
+  std::vector<int> large_labels_;  ///< largest area first
+  std::vector<int> counted_for_;   ///< the last label that a node was counted for
+};
+
+}  // namespace ddgng
