@@ -15,6 +15,8 @@ if(LADDER_BUILD_TESTS)
 endif()
 if(LADDER_BUILD_SIMULATOR)
   find_package(mujoco REQUIRED)
+  # Debian's package names a build-time folder (libqhull_r) as include path; the headers stand in the compiler's own.
+  set_target_properties(mujoco::mujoco PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "")
 endif()
 if(LADDER_BUILD_TESTS AND LADDER_BUILD_BENCHES)
   find_package(benchmark REQUIRED)
