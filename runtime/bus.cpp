@@ -10,13 +10,14 @@ namespace {
 
 constexpr std::int64_t kNewRecordingUs = 1'000'000;
 constexpr int kMaxMessagesPerDrain = 4096;  // a flood must not keep the work step from running
-constexpr int kQueueCapacity = 512;         // LCM drops the newest beyond this; drained far more often
+constexpr int kQueueCapacity = 512;  // LCM drops the newest beyond this; drained far more often
 
 /// The value of "name=123" in an LCM URL, 0 where absent.
 std::int64_t url_number(const std::string& url, const std::string& name) {
   const std::size_t at = url.find(name + "=");
   std::int64_t value = 0;
-  if (at != std::string::npos) std::from_chars(url.data() + at + name.size() + 1, url.data() + url.size(), value);
+  if (at != std::string::npos)
+    std::from_chars(url.data() + at + name.size() + 1, url.data() + url.size(), value);
   return value;
 }
 
@@ -34,8 +35,10 @@ std::shared_ptr<lcm_t> open_lcm(const std::string& url) {
   if (connection == nullptr) {
     std::string fix = "check the URL";
     if (url.starts_with("udpm")) {
-      fix = "most likely there is no route for multicast; on the robot and on a machine without a network run\n"
-            "    sudo ip link set lo up && sudo ip route add 239.255.76.67/32 dev lo";
+      fix =
+          "most likely there is no route for multicast; on the robot and on a machine without a "
+          "network run\n"
+          "    sudo ip link set lo up && sudo ip route add 239.255.76.67/32 dev lo";
     }
     throw BusError("LCM cannot open " + url + ": " + fix);
   }
@@ -50,15 +53,18 @@ std::string socket_buffer_problem(const std::string& url) {
   const std::int64_t stock = kernel_number("/proc/sys/net/core/rmem_default");
   const std::int64_t granted = asked > 0 ? std::min(asked, allowed) : stock;
   if (granted >= kNeeded) return "";
-  return "the socket receive buffer is " + std::to_string(granted) + " bytes, " + std::to_string(kNeeded) +
-         " are needed: point clouds will be lost. Run\n    sudo sysctl -w net.core.rmem_max=8388608 "
+  return "the socket receive buffer is " + std::to_string(granted) + " bytes, " +
+         std::to_string(kNeeded) +
+         " are needed: point clouds will be lost. Run\n    sudo sysctl -w "
+         "net.core.rmem_max=8388608 "
          "net.core.rmem_default=4194304\nand use the URL " +
          Bus::kDefaultUrl;
 }
 
 Reject judge_order(StreamPosition next, StreamPosition& position, InputCounts& counts) {
   const bool first = position.seq < 0;
-  if (first || next.utime < position.utime - kNewRecordingUs || (next.seq < position.seq && next.utime > position.utime)) {
+  if (first || next.utime < position.utime - kNewRecordingUs ||
+      (next.seq < position.seq && next.utime > position.utime)) {
     counts.restarts += first ? 0 : 1;
     position = next;
     return Reject::kNone;
@@ -74,7 +80,8 @@ Bus::Bus(const std::string& url) : Bus(open_lcm(url)) {}
 Bus::Bus(std::shared_ptr<lcm_t> connection) : connection_(std::move(connection)) {}
 
 Bus::~Bus() {
-  for (lcm_subscription_t* subscription : subscriptions_) lcm_unsubscribe(connection_.get(), subscription);
+  for (lcm_subscription_t* subscription : subscriptions_)
+    lcm_unsubscribe(connection_.get(), subscription);
 }
 
 void Bus::attach(Input& input) {
@@ -96,8 +103,8 @@ void Bus::on_message(const lcm_recv_buf_t* received, const char* /*channel*/, vo
 }
 
 void Bus::send(const char* channel_name) {
-  const int sent =
-      lcm_publish(connection_.get(), channel_name, buffer_.data(), static_cast<unsigned int>(buffer_.size()));
+  const int sent = lcm_publish(connection_.get(), channel_name, buffer_.data(),
+                               static_cast<unsigned int>(buffer_.size()));
   if (sent != 0) ++publish_failures_;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one door to LCM: guarded raw subscriptions into mailboxes and queues, and typed publishing. One thread owns it.
-// Handlers never throw: a malformed message is counted by cause and forgotten.
+// The one door to LCM: guarded raw subscriptions into mailboxes and queues, and typed publishing.
+// One thread owns it. Handlers never throw: a malformed message is counted by cause and forgotten.
 #pragma once
 
 #include <array>
@@ -32,13 +32,15 @@ struct StreamPosition {
   std::int64_t seq = -1;
 };
 
-/// Compares a message with the one before it: updates position and counts, kStale for a duplicate or a late one.
-/// A jump backwards by more than a second is a new recording or a restarted sender and is accepted (counts.restarts).
+/// Compares a message with the one before it: updates position and counts, kStale for a duplicate
+/// or a late one. A jump backwards by more than a second is a new recording or a restarted sender
+/// and is accepted (counts.restarts).
 Reject judge_order(StreamPosition next, StreamPosition& position, InputCounts& counts);
 
 class Bus {
  public:
-  static constexpr const char* kDefaultUrl = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
+  static constexpr const char* kDefaultUrl =
+      "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304";
 
   /// Opens its own connection. Throws BusError where there is no route for multicast.
   explicit Bus(const std::string& url);
@@ -69,22 +71,26 @@ class Bus {
     return subscribe<Msg, Queue<Msg>>(channel, true, capacity);
   }
 
-  /// As queue(), for channels that several senders share (HEALTH, EVENT, CONFIG): the order of seq is not judged.
+  /// As queue(), for channels that several senders share (HEALTH, EVENT, CONFIG): the order of seq
+  /// is not judged.
   template <class Msg>
   Queue<Msg>& shared_queue(const Channel<Msg>& channel, std::size_t capacity) {
     return subscribe<Msg, Queue<Msg>>(channel, false, capacity);
   }
 
-  /// Encodes and sends. A message whose counts disagree with its arrays is our own bug (CHECK). A failed send is counted.
+  /// Encodes and sends. A message whose counts disagree with its arrays is our own bug (CHECK). A
+  /// failed send is counted.
   template <class Msg>
   void publish(const Channel<Msg>& channel, const Msg& message) {
-    CHECK(encodable(message), "message counts must equal the sizes of their arrays and stay within their maxima");
+    CHECK(encodable(message),
+          "message counts must equal the sizes of their arrays and stay within their maxima");
     buffer_.resize(static_cast<std::size_t>(message.getEncodedSize()));
     message.encode(buffer_.data(), 0, static_cast<int>(buffer_.size()));
     send(channel.name);
   }
 
-  /// Hands everything that has arrived to the mailboxes; returns the number of messages. Never blocks.
+  /// Hands everything that has arrived to the mailboxes; returns the number of messages. Never
+  /// blocks.
   int drain();
 
   /// Readable when drain() has work to do.
@@ -102,7 +108,8 @@ class Bus {
     input->channel_name = channel.name;
     input->channel_number = channel.number;
     input->bus = this;
-    input->accept = [holder, judge, message = Msg{}](std::span<const std::uint8_t> bytes, Input& in) mutable {
+    input->accept = [holder, judge, message = Msg{}](std::span<const std::uint8_t> bytes,
+                                                     Input& in) mutable {
       Reject verdict = decode_guarded(bytes, message);
       if (verdict == Reject::kNone && judge) {
         verdict = judge_order({message.utime, message.seq}, in.position, in.counts);

@@ -14,6 +14,8 @@ std::int64_t read_us(clockid_t clock) {
 
 }  // namespace
 
-base::Now clock_now() { return {.monotonic_us = read_us(CLOCK_MONOTONIC), .utime_us = read_us(CLOCK_REALTIME)}; }
+base::Now clock_now() {
+  return {.monotonic_us = read_us(CLOCK_MONOTONIC), .utime_us = read_us(CLOCK_REALTIME)};
+}
 
 }  // namespace runtime

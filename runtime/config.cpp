@@ -2,6 +2,7 @@
 #include "runtime/config.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -14,8 +15,9 @@ namespace runtime {
 
 struct ConfigTable::Source {
   toml::table root;
-  std::map<std::string, std::string> read;    ///< full key -> value as TOML
-  std::map<std::string, std::string> places;  ///< full key -> "file:line" (toml++ forgets it when nodes are merged)
+  std::map<std::string, std::string> read;  ///< full key -> value as TOML
+  std::map<std::string, std::string>
+      places;  ///< full key -> "file:line" (toml++ forgets it when nodes are merged)
 
   std::string place(const std::string& key) const {
     const auto found = places.find(key);
@@ -79,7 +81,8 @@ std::string number_text(Real value) {
   return result;
 }
 
-void collect_unread(const toml::table& table, const std::string& path, const std::map<std::string, std::string>& read,
+void collect_unread(const toml::table& table, const std::string& path,
+                    const std::map<std::string, std::string>& read,
                     std::vector<std::string>& unread) {
   for (const auto& [key, node] : table) {
     const std::string full = path + "." + std::string(key.str());
@@ -100,7 +103,9 @@ std::string outside(const T& value, T low, T high) {
 
 }  // namespace
 
-std::string ConfigTable::full(std::string_view key) const { return path_ + "." + std::string(key); }
+std::string ConfigTable::full(std::string_view key) const {
+  return path_ + "." + std::string(key);
+}
 
 ConfigTable ConfigTable::table(std::string_view name) const {
   const toml::node_view<toml::node> node = source_->root.at_path(full(name));
@@ -108,12 +113,23 @@ ConfigTable ConfigTable::table(std::string_view name) const {
   return {source_, full(name)};
 }
 
-void ConfigTable::fail(std::string_view key, const std::string& problem) const {
-  throw ConfigError(source_->place(full(key)) + full(key) + " " + problem);
+void ConfigTable::require(const std::string& violation) const {
+  if (violation.empty()) return;
+  // Name the place of the first key that the violation speaks of and that a file or --set gave.
+  std::string word;
+  for (const char c : violation + " ") {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') {
+      word += c;
+      continue;
+    }
+    if (source_->places.contains(full(word))) fail(word, "is wrong: " + violation);
+    word.clear();
+  }
+  throw ConfigError("[" + path_ + "]: " + violation);
 }
 
-void ConfigTable::require(const std::string& violation) const {
-  if (!violation.empty()) throw ConfigError("[" + path_ + "]: " + violation);
+void ConfigTable::fail(std::string_view key, const std::string& problem) const {
+  throw ConfigError(source_->place(full(key)) + full(key) + " " + problem);
 }
 
 void ConfigTable::read(std::string_view key, bool& value) {
@@ -129,7 +145,8 @@ void ConfigTable::read(std::string_view key, std::int64_t& value, Range<std::int
     if (!node.is_integer()) fail(key, "must be a whole number");
     value = node.as_integer()->get();
   }
-  if (!(value >= range.low && value <= range.high)) fail(key, outside(value, range.low, range.high));
+  if (!(value >= range.low && value <= range.high))
+    fail(key, outside(value, range.low, range.high));
   source_->read[full(key)] = std::to_string(value);
 }
 
@@ -151,7 +168,8 @@ void ConfigTable::read(std::string_view key, double& value, Range<double> range)
     value = *node.value<double>();
   }
   if (!std::isfinite(value)) fail(key, "must be finite");
-  if (!(value >= range.low && value <= range.high)) fail(key, outside(value, range.low, range.high));
+  if (!(value >= range.low && value <= range.high))
+    fail(key, outside(value, range.low, range.high));
   source_->read[full(key)] = number_text(value);
 }
 
@@ -175,7 +193,8 @@ void ConfigTable::read(std::string_view key, std::vector<double>& value) {
     if (array == nullptr) fail(key, "must be an array of numbers");
     value.clear();
     for (const toml::node& element : *array) {
-      if (!element.is_number() || !std::isfinite(*element.value<double>())) fail(key, "must be an array of numbers");
+      if (!element.is_number() || !std::isfinite(*element.value<double>()))
+        fail(key, "must be an array of numbers");
       value.push_back(*element.value<double>());
     }
   }
@@ -184,18 +203,21 @@ void ConfigTable::read(std::string_view key, std::vector<double>& value) {
   source_->read[full(key)] = "[" + text + "]";
 }
 
-Config Config::load(const std::vector<std::string>& files, const std::vector<std::string>& overrides) {
+Config Config::load(const std::vector<std::string>& files,
+                    const std::vector<std::string>& overrides) {
   Config config;
   config.source_ = std::make_shared<ConfigTable::Source>();
   for (const std::string& file : files) {
     std::ifstream stream(file);
-    if (!stream) throw ConfigError(file + ": cannot be opened; give an existing file with --config");
+    if (!stream)
+      throw ConfigError(file + ": cannot be opened; give an existing file with --config");
     try {
       const toml::table table = toml::parse(stream, file);
       merge(config.source_->root, table);
       note_places(table, "", file, config.source_->places);
     } catch (const toml::parse_error& error) {
-      throw ConfigError(file + ":" + std::to_string(error.source().begin.line) + ": " + std::string(error.description()));
+      throw ConfigError(file + ":" + std::to_string(error.source().begin.line) + ": " +
+                        std::string(error.description()));
     }
   }
   for (const std::string& text : overrides) {
@@ -206,7 +228,8 @@ Config Config::load(const std::vector<std::string>& files, const std::vector<std
   return config;
 }
 
-void Config::check_all_read(const std::vector<std::string>& own_tables, const std::vector<std::string>& known_tables) const {
+void Config::check_all_read(const std::vector<std::string>& own_tables,
+                            const std::vector<std::string>& known_tables) const {
   std::vector<std::string> unread;
   for (const auto& [key, node] : source_->root) {
     const std::string name(key.str());
@@ -223,11 +246,13 @@ void Config::check_all_read(const std::vector<std::string>& own_tables, const st
   const std::string table = key.substr(0, key.rfind('.') + 1);
   std::string known;
   for (const auto& entry : source_->read) {
-    if (entry.first.starts_with(table) && entry.first.find('.', table.size()) == std::string::npos) {
+    if (entry.first.starts_with(table) &&
+        entry.first.find('.', table.size()) == std::string::npos) {
       known += (known.empty() ? "" : ", ") + entry.first.substr(table.size());
     }
   }
-  throw ConfigError(source_->place(key) + "unknown key " + key + (known.empty() ? "" : "; known there: " + known));
+  throw ConfigError(source_->place(key) + "unknown key " + key +
+                    (known.empty() ? "" : "; known there: " + known));
 }
 
 std::string Config::resolved() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strict configuration: TOML files and --set overrides, merged in that order. Every key is read exactly once, in its range;
-// a key that nobody reads is an error. All errors name file and line and are thrown as ConfigError before any work starts.
+// Strict configuration: TOML files and --set overrides, merged in that order. Every key is read
+// exactly once, in its range; a key that nobody reads is an error. All errors name file and line
+// and are thrown as ConfigError before any work starts.
 #pragma once
 
 #include <array>
@@ -34,10 +35,12 @@ using Choice = std::pair<std::string_view, T>;
 
 class Config;
 
-/// One table of the configuration, e.g. [gng.growing]. Reading leaves the value alone where the key is absent (the default stays).
+/// One table of the configuration, e.g. [gng.growing]. Reading leaves the value alone where the key
+/// is absent (the default stays).
 class ConfigTable {
  public:
-  ConfigTable table(std::string_view name) const;  ///< a table inside this one; absent = every default stays
+  ConfigTable table(
+      std::string_view name) const;  ///< a table inside this one; absent = every default stays
 
   void read(std::string_view key, bool& value);
   void read(std::string_view key, int& value, Range<int> range = {});
@@ -82,7 +85,8 @@ class ConfigTable {
  private:
   friend class Config;
   struct Source;
-  ConfigTable(std::shared_ptr<Source> source, std::string path) : source_(std::move(source)), path_(std::move(path)) {}
+  ConfigTable(std::shared_ptr<Source> source, std::string path)
+      : source_(std::move(source)), path_(std::move(path)) {}
   std::string full(std::string_view key) const;
 
   std::shared_ptr<Source> source_;
@@ -91,13 +95,17 @@ class ConfigTable {
 
 class Config {
  public:
-  /// Reads files (later ones win) and overrides of the form "table.key=value" (value in TOML syntax; a bare word is a string).
-  static Config load(const std::vector<std::string>& files, const std::vector<std::string>& overrides);
+  /// Reads files (later ones win) and overrides of the form "table.key=value" (value in TOML
+  /// syntax; a bare word is a string).
+  static Config load(const std::vector<std::string>& files,
+                     const std::vector<std::string>& overrides);
 
   ConfigTable table(std::string_view name) const { return {source_, std::string(name)}; }
 
-  /// Throws where a key of the given top-level tables was never read, or a top-level table is none of the known ones.
-  void check_all_read(const std::vector<std::string>& own_tables, const std::vector<std::string>& known_tables) const;
+  /// Throws where a key of the given top-level tables was never read, or a top-level table is none
+  /// of the known ones.
+  void check_all_read(const std::vector<std::string>& own_tables,
+                      const std::vector<std::string>& known_tables) const;
 
   /// Every key that was read with its value, as TOML, in ascending order of names.
   std::string resolved() const;

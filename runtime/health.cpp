@@ -12,7 +12,8 @@ namespace runtime {
 namespace {
 
 std::int32_t bounded(std::int64_t value) {
-  return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, -1, std::numeric_limits<std::int32_t>::max()));
+  return static_cast<std::int32_t>(
+      std::clamp<std::int64_t>(value, -1, std::numeric_limits<std::int32_t>::max()));
 }
 
 }  // namespace
@@ -81,6 +82,8 @@ const ladder_msgs::health_t& Health::snapshot(std::int64_t utime_us, const Bus& 
 StageTimer::StageTimer(Health& health, std::size_t stage)
     : health_(health), stage_(stage), start_us_(clock_now().monotonic_us) {}
 
-StageTimer::~StageTimer() { health_.add_stage_us(stage_, clock_now().monotonic_us - start_us_); }
+StageTimer::~StageTimer() {
+  health_.add_stage_us(stage_, clock_now().monotonic_us - start_us_);
+}
 
 }  // namespace runtime

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Collects what health_t says: state, flags, durations of the stages of the work step. Inputs are added from the bus.
+// Collects what health_t says: state, flags, durations of the stages of the work step. Inputs are
+// added from the bus.
 #pragma once
 
 #include <array>
@@ -20,7 +21,9 @@ class Health {
 
   void set_state(std::int8_t state) { message_.state = state; }
   /// flag: health_t FLAG_*.
-  void set_flag(std::int64_t flag, bool on) { message_.flags = on ? message_.flags | flag : message_.flags & ~flag; }
+  void set_flag(std::int64_t flag, bool on) {
+    message_.flags = on ? message_.flags | flag : message_.flags & ~flag;
+  }
   void set_head_state(const std::array<std::int8_t, 4>& state);
   void count_step() { ++message_.steps; }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a person should know: to standard error and, where a bus is given, as event_t. The same text is not repeated within five seconds.
+// What a person should know: to standard error and, where a bus is given, as event_t. The same text
+// is not repeated within five seconds.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where received messages wait for the work step: the newest of a stream, or a bounded first-in-first-out queue of commands.
-// LCM's own queue keeps the oldest when it is full, which is the wrong end for a stream (docs/ARCHITECTURE.md, "Mailboxes").
+// Where received messages wait for the work step: the newest of a stream, or a bounded
+// first-in-first-out queue of commands. LCM's own queue keeps the oldest when it is full, which is
+// the wrong end for a stream (docs/ARCHITECTURE.md, "Mailboxes").
 #pragma once
 
 #include <cstddef>
@@ -14,12 +15,13 @@ namespace runtime {
 
 /// What happened to the messages of one subscribed channel since the start.
 struct InputCounts {
-  std::int64_t received = 0;     ///< rejected ones included
-  std::int64_t lost = 0;         ///< gaps in seq
-  std::int64_t overwritten = 0;  ///< replaced by a newer one before it was used, or refused by a full queue
+  std::int64_t received = 0;  ///< rejected ones included
+  std::int64_t lost = 0;      ///< gaps in seq
+  std::int64_t overwritten =
+      0;  ///< replaced by a newer one before it was used, or refused by a full queue
   std::int64_t rejected = 0;
-  std::int64_t restarts = 0;     ///< seq or utime began anew: another sender or another recording
-  base::Quantiles age_us;        ///< now - utime when work on it starts
+  std::int64_t restarts = 0;  ///< seq or utime began anew: another sender or another recording
+  base::Quantiles age_us;     ///< now - utime when work on it starts
 };
 
 /// Holds the newest message only.
@@ -28,7 +30,8 @@ class Mailbox {
  public:
   explicit Mailbox(InputCounts& counts) : counts_(counts) {}
 
-  /// The newest message if it was not taken before, else nullptr. Valid until the next drain of the bus.
+  /// The newest message if it was not taken before, else nullptr. Valid until the next drain of the
+  /// bus.
   const Msg* take(std::int64_t now_utime_us) {
     if (!fresh_) return nullptr;
     fresh_ = false;
@@ -37,7 +40,8 @@ class Mailbox {
   }
   bool fresh() const { return fresh_; }
 
-  /// Takes over the content of the message, gives back an old one to decode the next into (its capacity is reused).
+  /// Takes over the content of the message, gives back an old one to decode the next into (its
+  /// capacity is reused).
   void put(Msg& message) {
     if (fresh_) ++counts_.overwritten;
     std::swap(message_, message);
@@ -50,7 +54,8 @@ class Mailbox {
   bool fresh_ = false;
 };
 
-/// Keeps up to a fixed number of messages in order of arrival; a message that finds it full is dropped and counted.
+/// Keeps up to a fixed number of messages in order of arrival; a message that finds it full is
+/// dropped and counted.
 template <class Msg>
 class Queue {
  public:

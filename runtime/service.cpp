@@ -29,7 +29,8 @@ struct Arguments {
   bool check = false;
 };
 
-/// SIGTERM and SIGINT as a readable file descriptor; blocked before LCM starts its thread, which inherits the mask.
+/// SIGTERM and SIGINT as a readable file descriptor; blocked before LCM starts its thread, which
+/// inherits the mask.
 int open_stop_signals() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -42,7 +43,8 @@ int open_stop_signals() {
 std::string lcm_url(const Arguments& arguments) {
   if (!arguments.url.empty()) return arguments.url;
   const char* from_environment = std::getenv("LCM_DEFAULT_URL");
-  return from_environment != nullptr && *from_environment != '\0' ? from_environment : Bus::kDefaultUrl;
+  return from_environment != nullptr && *from_environment != '\0' ? from_environment
+                                                                  : Bus::kDefaultUrl;
 }
 
 /// Publishes health twice a second and the configuration every five seconds.
@@ -78,7 +80,8 @@ class Reporter {
   std::int64_t next_config_us_ = 0;
 };
 
-void work_until_stopped(Service& service, Bus& bus, Health& health, Reporter& reporter, int stop_signals) {
+void work_until_stopped(Service& service, Bus& bus, Health& health, Reporter& reporter,
+                        int stop_signals) {
   pollfd waiting[2] = {{bus.file_descriptor(), POLLIN, 0}, {stop_signals, POLLIN, 0}};
   while ((waiting[1].revents & POLLIN) == 0) {
     poll(waiting, 2, kMaxWaitMs);
@@ -105,7 +108,8 @@ int run(const ServiceDescription& description, const Arguments& arguments, Journ
     std::printf("%s", config.resolved().c_str());
     return kExitAsked;
   }
-  journal.publish_to([&bus](const ladder_msgs::event_t& event) { bus.publish(channels::kEvent, event); });
+  journal.publish_to(
+      [&bus](const ladder_msgs::event_t& event) { bus.publish(channels::kEvent, event); });
   if (const std::string problem = socket_buffer_problem(url); !problem.empty()) {
     journal.warning(problem);
     health.set_flag(ladder_msgs::health_t::FLAG_SMALL_SOCKET_BUFFER, true);
@@ -125,15 +129,18 @@ int run(const ServiceDescription& description, const Arguments& arguments, Journ
 }  // namespace
 
 const std::vector<std::string>& known_config_tables() {
-  static const std::vector<std::string> tables{"sensor", "gng", "ladder", "climb", "simulator", "viewer"};
+  static const std::vector<std::string> tables{"sensor", "gng",       "ladder",
+                                               "climb",  "simulator", "viewer"};
   return tables;
 }
 
 int run_service(int argc, char** argv, const ServiceDescription& description) {
   CLI::App app{description.purpose};
   Arguments arguments;
-  app.add_option("-c,--config", arguments.config_files, "TOML file; later ones win (default: built-in values)");
-  app.add_option("--set", arguments.overrides, "table.key=value, wins over the files")->allow_extra_args(false);
+  app.add_option("-c,--config", arguments.config_files,
+                 "TOML file; later ones win (default: built-in values)");
+  app.add_option("--set", arguments.overrides, "table.key=value, wins over the files")
+      ->allow_extra_args(false);
   app.add_option("--url", arguments.url, "LCM URL (default: LCM_DEFAULT_URL, else the robot's)");
   app.add_flag("--check", arguments.check, "print the resolved configuration and stop");
   app.set_version_flag("--version", std::string(kVersion));

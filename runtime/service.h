@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One way to be a service: a class that is built from a ServiceContext and has step(now). run_service() is its only main loop;
-// a replay or the robot in a box construct the same class and call step() themselves.
+// One way to be a service: a class that is built from a ServiceContext and has step(now).
+// run_service() is its only main loop; a replay or the robot in a box construct the same class and
+// call step() themselves.
 #pragma once
 
 #include <functional>
@@ -26,7 +27,8 @@ struct ServiceContext {
 class Service {
  public:
   virtual ~Service() = default;
-  /// Takes what is in the mailboxes, works, publishes. Called after every drain and at least every 50 ms.
+  /// Takes what is in the mailboxes, works, publishes. Called after every drain and at least every
+  /// 50 ms.
   virtual void step(const base::Now& now) noexcept = 0;
 };
 
@@ -39,11 +41,13 @@ struct ServiceDescription {
 };
 
 inline constexpr int kExitAsked = 0;
-inline constexpr int kExitConfiguration = 2;  ///< wrong arguments or configuration: a restart will not help
-inline constexpr int kExitDevice = 3;         ///< LCM or a device is missing: a restart may help
+inline constexpr int kExitConfiguration =
+    2;  ///< wrong arguments or configuration: a restart will not help
+inline constexpr int kExitDevice = 3;  ///< LCM or a device is missing: a restart may help
 inline constexpr int kExitInternal = 70;
 
-/// Arguments -> configuration -> bus -> construction -> loop -> exit code. SIGTERM and SIGINT end it with 0.
+/// Arguments -> configuration -> bus -> construction -> loop -> exit code. SIGTERM and SIGINT end
+/// it with 0.
 int run_service(int argc, char** argv, const ServiceDescription& description);
 
 /// Top-level tables that a configuration file may hold.

@@ -2,8 +2,12 @@
 # For the other scripts (source it): say what is done, stop with the fix, build a preset.
 
 set -euo pipefail
+called_from=$PWD
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$repository"
+
+# A path as the user meant it, from the folder he stands in.
+from_caller() { (cd "$called_from" && realpath -m -- "$1"); }
 
 started=$(date +%s)
 step() { printf '\n==> [%4ds] %s\n' $(($(date +%s) - started)) "$*"; }

@@ -138,12 +138,17 @@ TEST(Config, HashFollowsValues) {
   EXPECT_NE(hash_with({}), hash_with({"gng.eta=0.2"}));
 }
 
-// A violated relation between parameters names the table.
+// A violated relation between parameters names the table, and the place where a file or --set gave
+// one of them.
 TEST(Config, Require) {
-  const Config config = Config::load({}, {});
-  EXPECT_EQ(error_of([&] { config.table("gng").require(""); }), "no error");
-  EXPECT_THAT(error_of([&] { config.table("gng").require("a must be below b"); }),
+  const Config defaults = Config::load({}, {});
+  EXPECT_EQ(error_of([&] { defaults.table("gng").require(""); }), "no error");
+  EXPECT_THAT(error_of([&] { defaults.table("gng").require("a must be below b"); }),
               HasSubstr("[gng]: a must be below b"));
+  const std::string path = write_file("relation.toml", "[gng]\n\nb = 2\n");
+  const Config given = Config::load({path}, {});
+  EXPECT_THAT(error_of([&] { given.table("gng").require("a must be below b"); }),
+              HasSubstr(path + ":3: gng.b"));
 }
 
 }  // namespace
