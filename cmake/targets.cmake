@@ -34,13 +34,16 @@ function(ladder_library name)
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()
 
-# ladder_executable(NAME SOURCES ... [LINK ...])  An installed program in build/<preset>/bin.
+# ladder_executable(NAME SOURCES ... [LINK ...] [OUTPUT name])  An installed program in build/<preset>/bin.
 function(ladder_executable name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "OUTPUT" "SOURCES;LINK")
+  if(NOT arg_OUTPUT)
+    set(arg_OUTPUT ${name})
+  endif()
   add_executable(${name} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${arg_LINK} ladder_options)
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin")
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/bin" OUTPUT_NAME ${arg_OUTPUT})
 endfunction()
 
 # ladder_test(NAME SOURCES ... [LINK ...] [LABELS ...] [TIMEOUT s])  One GoogleTest program = one ctest entry.
