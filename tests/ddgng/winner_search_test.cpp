@@ -10,6 +10,7 @@
 #include <hwy/targets.h>
 
 #include "base/rng.h"
+#include "random_shapes.h"
 
 namespace ddgng {
 namespace {
@@ -34,38 +35,9 @@ Winners brute_force(const Graph& graph, const Eigen::Vector3f& v) {
   return winners;
 }
 
-enum class Shape { kUniform, kClusters, kDuplicates, kCollinear, kLattice, kIdentical };
-
-Eigen::Vector3f draw(Shape shape, base::Rng& rng) {
-  const auto u = [&rng] { return static_cast<float>(rng.uniform()); };
-  switch (shape) {
-    case Shape::kUniform:
-      return {4 * u(), 4 * u(), 4 * u()};
-    case Shape::kClusters: {
-      const auto c = static_cast<float>(rng.below(4));
-      return {c + 0.01F * u(), 0.01F * u() - c, 0.001F * u()};
-    }
-    case Shape::kDuplicates: {
-      const auto c = static_cast<float>(rng.below(5));
-      return {c, 0.5F * c, -c};
-    }
-    case Shape::kCollinear:
-      return {u(), 0.0F, 1.0F};
-    case Shape::kLattice:  // many exact ties
-      return {static_cast<float>(rng.below(4)), static_cast<float>(rng.below(4)),
-              static_cast<float>(rng.below(4))};
-    case Shape::kIdentical:
-      break;
-  }
-  return {1.0F, 2.0F, 3.0F};
-}
-
-constexpr Shape kShapes[] = {Shape::kUniform,   Shape::kClusters, Shape::kDuplicates,
-                             Shape::kCollinear, Shape::kLattice,  Shape::kIdentical};
-
 Graph random_graph(Shape shape, int num_nodes, base::Rng& rng) {
   Graph graph(num_nodes + 8, 4);
-  for (int i = 0; i < num_nodes + 8; ++i) graph.add_node(draw(shape, rng));
+  for (int i = 0; i < num_nodes + 8; ++i) graph.add_node(random_point(shape, rng));
   while (graph.num_nodes() > num_nodes) {  // holes
     const auto slot = static_cast<int>(rng.below(static_cast<std::uint32_t>(num_nodes + 8)));
     if (graph.alive(slot)) graph.remove_node(slot);
@@ -94,7 +66,7 @@ TEST_P(WinnerSearch, EqualsBruteForceForFewNodes) {
     for (const Shape shape : kShapes) {
       const Graph graph = random_graph(shape, num_nodes, rng);
       for (int i = 0; i < 20; ++i) {
-        const Eigen::Vector3f v = draw(shape, rng);
+        const Eigen::Vector3f v = random_point(shape, rng);
         expect_equal(brute_force(graph, v), nearest_two_linear(graph, v));
       }
     }
@@ -107,7 +79,7 @@ TEST_P(WinnerSearch, EqualsBruteForceForManyNodes) {
   for (const Shape shape : kShapes) {
     const Graph graph = random_graph(shape, 1000, rng);
     for (int i = 0; i < 500; ++i) {
-      const Eigen::Vector3f v = (i % 5 == 0 ? 1000.0F : 1.0F) * draw(kShapes[i % 6], rng);
+      const Eigen::Vector3f v = (i % 5 == 0 ? 1000.0F : 1.0F) * random_point(kShapes[i % 6], rng);
       expect_equal(brute_force(graph, v), nearest_two_linear(graph, v));
     }
   }
