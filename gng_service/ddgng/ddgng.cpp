@@ -90,12 +90,13 @@ void DynamicDensityGng::learn(std::span<const Signal> signals, int max_plane_nod
 
 // PAPER: one round per frame; then a ladder gets no node in its first seconds; docs/EQUATIONS.md
 void DynamicDensityGng::insertion_round(int round, int max_plane_nodes) {
-  const bool room = growing_.graph().num_nodes() - growing_.num_inside() < max_plane_nodes;
-  if (room && round % params_.growing.plain_insertion_every == 0) {
-    insert(Growing::Weighting::kError);
-  }
-  // With nothing suspected, all strengths are equal and this round is a plain one too.
-  if (room || steered_) insert(Growing::Weighting::kErrorAndStrength);
+  const auto room = [&] {
+    return growing_.graph().num_nodes() - growing_.num_inside() < max_plane_nodes;
+  };
+  const bool plain_too = round % params_.growing.plain_insertion_every == 0;
+  if (plain_too && room()) insert(Growing::Weighting::kError);
+  // With nothing suspected, all strengths are equal and this is a plain insertion too.
+  if (steered_ || room()) insert(Growing::Weighting::kErrorAndStrength);
 }
 
 void DynamicDensityGng::insert(Growing::Weighting weighting) {

@@ -2,6 +2,7 @@
 #include "ddgng/graph.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/check.h"
 
@@ -49,6 +50,7 @@ void Graph::move_towards(int slot, const Eigen::Vector3f& target_m, float rate) 
 
 int Graph::add_node(const Eigen::Vector3f& position_m) {
   CHECK(num_nodes_ < max_nodes_, "add_node on a full graph");
+  if (next_id_ == std::numeric_limits<int>::max()) renumber();
   const int slot = lowest_free_;
   x_m_[slot] = position_m.x();
   y_m_[slot] = position_m.y();

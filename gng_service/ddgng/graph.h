@@ -36,6 +36,7 @@ class Graph {
 
   bool alive(int slot) const { return id_[slot] >= 0; }
   /// Unique among all nodes since clear() or renumber(), ascending with creation; -1 = empty slot.
+  /// After 2^31 nodes (days at full speed) add_node() renumbers.
   int id(int slot) const { return id_[slot]; }
   int next_id() const { return next_id_; }
   /// Gives the living nodes the ids 0, 1, ... in their present order.
