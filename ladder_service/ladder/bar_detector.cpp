@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ladder/bar_detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ladder {
+
+BarDetector::BarDetector(const LadderParams& params)
+    : params_(params), nodes_(params), search_(params), test_(params), measurement_(params) {
+  found_.bars.reserve(params.max_bars);
+  found_.rails.reserve(params.max_bars);
+  used_.reserve(params.max_bars);
+  deep_.reserve(params.max_bars);
+}
+
+const Detections& BarDetector::detect(const NodeCloud& cloud) {
+  found_.bars.clear();
+  found_.rails.clear();
+  nodes_.gather(cloud);
+  const Eigen::Vector3d body_m = cloud.body_position_m.cast<double>();
+  const BarSet& bars = search_.search(nodes_, body_m);
+  const LadderHypothesis& ladder = test_.find(nodes_, bars, body_m);
+  used_.assign(bars.rungs.size(), 0);
+  found_.is_ladder = false;
+  if (ladder.found()) measure_ladder(cloud, bars, ladder);
+  for (int i = 0; i < static_cast<int>(bars.rails.size()); ++i) {
+    if (found_.is_ladder && (i == ladder.left || i == ladder.right)) continue;
+    found_.rails.push_back(measurement_.measure_rail(cloud, nodes_, bars, bars.rails[i]));
+  }
+  measure_others(cloud, bars);
+  return found_;
+}
+
+void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
+                                 const LadderHypothesis& ladder) {
+  const MeasuredRail left = measurement_.measure_rail(cloud, nodes_, bars, bars.rails[ladder.left]);
+  const MeasuredRail right =
+      measurement_.measure_rail(cloud, nodes_, bars, bars.rails[ladder.right]);
+  found_.rails.assign({left, right});
+  for (const Joint& joint : ladder.joints) {
+    auto bar = measurement_.measure(cloud, nodes_, bars, joint.bar, {&left, &right});
+    if (!bar) continue;
+    bar->on_ladder = true;
+    found_.bars.push_back(*bar);
+  }
+  join_halves();
+  drop_short_stubs();
+  if (is_deep()) {
+    // Shelf boards go on behind their edges: no ladder, and its bars are measured as free ones.
+    found_.bars.clear();
+    found_.rails.clear();
+    return;
+  }
+  found_.is_ladder = true;
+  for (const Joint& joint : ladder.joints) used_[joint.bar] = 1;
+  keep_one_per_level();
+}
+
+void BarDetector::join_halves() {
+  const Eigen::Vector3d& up = found_.rails[0].axis.direction;
+  std::vector<MeasuredBar>& bars = found_.bars;
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    for (std::size_t j = 0; i < bars.size() && j < bars.size(); ++j) {
+      const bool halves = i != j && bars[i].reaches_end0 && !bars[i].reaches_end1 &&
+                          !bars[j].reaches_end0 && bars[j].reaches_end1;
+      if (!halves) continue;
+      MeasuredBar& left = bars[i];
+      const MeasuredBar& right = bars[j];
+      if (std::abs((left.end0_m - right.end1_m).dot(up)) > params_.test.v_height_m) continue;
+      const double gap_m = std::sqrt((left.end1_m - right.end0_m).squaredNorm());
+      if (gap_m > params_.test.v_gap_m) continue;
+      left.end1_m = right.end1_m;
+      left.reaches_end1 = true;
+      left.is_v = true;
+      left.weight += right.weight;
+      left.num_inliers += right.num_inliers;
+      bars.erase(bars.begin() + j);
+      break;
+    }
+  }
+}
+
+void BarDetector::drop_short_stubs() {
+  std::erase_if(found_.bars, [this](const MeasuredBar& bar) {
+    return bar.is_stub() && bar.length_m() < params_.test.min_stub_length_m;
+  });
+}
+
+bool BarDetector::is_deep() {
+  if (found_.bars.empty()) return true;
+  deep_.clear();
+  for (const MeasuredBar& bar : found_.bars) deep_.push_back(bar.deep);
+  const auto median = deep_.begin() + deep_.size() / 2;
+  std::nth_element(deep_.begin(), median, deep_.end());
+  return *median > params_.test.deep_max;
+}
+
+void BarDetector::keep_one_per_level() {
+  std::vector<MeasuredBar>& bars = found_.bars;
+  std::sort(bars.begin(), bars.end(), [](const MeasuredBar& a, const MeasuredBar& b) {
+    return a.weight > b.weight || (a.weight == b.weight && a.bar < b.bar);
+  });
+  const Eigen::Vector3d& up = found_.rails[0].axis.direction;
+  std::size_t num_kept = 0;
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    const bool taken = std::any_of(bars.begin(), bars.begin() + num_kept, [&](const auto& kept) {
+      return std::abs((bars[i].middle_m() - kept.middle_m()).dot(up)) < params_.test.same_level_m;
+    });
+    if (!taken) {
+      const MeasuredBar bar = bars[i];
+      bars[num_kept++] = bar;
+    }
+  }
+  bars.resize(num_kept);
+}
+
+void BarDetector::measure_others(const NodeCloud& cloud, const BarSet& bars) {
+  for (int i = 0; i < static_cast<int>(bars.rungs.size()); ++i) {
+    if (used_[i] || static_cast<int>(found_.bars.size()) >= params_.max_bars) continue;
+    const auto bar = measurement_.measure(cloud, nodes_, bars, i, {});
+    if (bar) found_.bars.push_back(*bar);
+  }
+}
+
+}  // namespace ladder

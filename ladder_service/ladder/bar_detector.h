@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One frame of the default mode, before any memory: nodes -> bars -> ladder hypothesis -> measured
+// bars. Bars that belong to no ladder stay in the list, marked as such.
+#pragma once
+
+#include <vector>
+
+#include "ladder/bar_measurement.h"
+#include "ladder/bar_nodes.h"
+#include "ladder/bar_search.h"
+#include "ladder/ladder_test.h"
+#include "ladder/measured_bar.h"
+
+namespace ladder {
+
+struct Detections {
+  std::vector<MeasuredBar> bars;    ///< those of the ladder first
+  std::vector<MeasuredRail> rails;  ///< the ladder's left and right one first
+  bool is_ladder = false;
+};
+
+class BarDetector {
+ public:
+  explicit BarDetector(const LadderParams& params);
+  const Detections& detect(const NodeCloud& cloud);
+
+ private:
+  void measure_ladder(const NodeCloud& cloud, const BarSet& bars, const LadderHypothesis& ladder);
+  void measure_others(const NodeCloud& cloud, const BarSet& bars);
+  void join_halves();
+  void drop_short_stubs();
+  bool is_deep();
+  void keep_one_per_level();
+
+  LadderParams params_;
+  BarNodes nodes_;
+  BarSearch search_;
+  LadderTest test_;
+  BarMeasurement measurement_;
+  Detections found_;
+  std::vector<char> used_;
+  std::vector<double> deep_;
+};
+
+}  // namespace ladder

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Measures one bar: refit away from the joints, common direction of the heads, radius and push back
+// from the visible front to the axis, ends, damage.
+#pragma once
+
+#include <optional>
+
+#include "ladder/bar.h"
+#include "ladder/measured_bar.h"
+#include "ladder/node_cloud.h"
+#include "ladder/params.h"
+
+namespace ladder {
+
+/// The rails that the bar lies between, or null for a free bar.
+struct Between {
+  const MeasuredRail* left = nullptr;
+  const MeasuredRail* right = nullptr;
+};
+
+class BarMeasurement {
+ public:
+  explicit BarMeasurement(const LadderParams& params) : params_(params) {}
+
+  /// Nothing when too few points remain or it touches neither rail.
+  std::optional<MeasuredBar> measure(const NodeCloud& cloud, const BarNodes& nodes,
+                                     const BarSet& bars, int bar_index, const Between& rails) const;
+  MeasuredRail measure_rail(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
+                            const Bar& rail) const;
+
+ private:
+  struct Fit;
+  bool refit(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars, const Bar& bar,
+             const Between& rails, Fit& fit) const;
+  void find_ends(const BarNodes& nodes, const BarSet& bars, const Bar& bar, const Between& rails,
+                 Fit& fit, MeasuredBar& out) const;
+  void find_radius(const NodeCloud& cloud, const Bar& bar, Fit& fit, MeasuredBar& out) const;
+  void find_sag(const BarNodes& nodes, const BarSet& bars, const Bar& bar, const Fit& fit,
+                MeasuredBar& out) const;
+  double weight_behind(const BarNodes& nodes, const Fit& fit) const;
+  void mark_stretches(const BarNodes& nodes, const BarSet& bars, const Bar& bar,
+                      const Between& rails, const Fit& fit, MeasuredBar& out) const;
+
+  LadderParams params_;
+};
+
+}  // namespace ladder

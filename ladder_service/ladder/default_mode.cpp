@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ladder/default_mode.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ladder {
+
+DefaultMode::DefaultMode(const LadderParams& params)
+    : params_(params), detector_(params), tracker_(params), confirmation_(params) {
+  order_.reserve(params.max_tracks);
+}
+
+void DefaultMode::reset() {
+  tracker_.reset();
+  confirmation_.reset();
+}
+
+void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
+                         std::vector<RungSurface>& surfaces, std::vector<RailLine>& rails) {
+  const Detections& found = detector_.detect(cloud);
+  tracker_.update(found.bars);
+  const std::vector<BarTrack>& tracks = tracker_.tracks();
+  estimate.state = confirmation_.update(found, tracks);
+  const bool confirmed = estimate.state == LadderState::kConfirmed;
+  estimate.spacing_m = confirmation_.spacing().spacing_m;
+  estimate.spacing_sigma_m = confirmation_.spacing().sigma_m;
+
+  order_.clear();
+  for (int i = 0; i < static_cast<int>(tracks.size()); ++i) order_.push_back(i);
+  std::sort(order_.begin(), order_.end(), [&](int a, int b) {
+    const double za = tracks[a].bar.middle_m().z();
+    const double zb = tracks[b].bar.middle_m().z();
+    return za < zb || (za == zb && a < b);
+  });
+  estimate.rungs.clear();
+  surfaces.clear();
+  for (const int i : order_) {
+    const BarTrack& track = tracks[i];
+    estimate.rungs.push_back(to_rung(track, confirmed));
+    surfaces.push_back({track.bar.seen, track.bar.attached, track.bar.tilt_sin, true});
+  }
+  write_rails(found, estimate, rails);
+}
+
+Rung DefaultMode::to_rung(const BarTrack& track, bool confirmed) const {
+  const MeasuredBar& bar = track.bar;
+  const bool trusted = confirmed && track.is_proven && track.num_missed < params_.track.max_missed;
+  Rung rung;
+  rung.id = track.id;
+  rung.state = trusted ? RungState::kTrusted : RungState::kCandidate;
+  rung.age = track.evidence;
+  rung.confidence = static_cast<double>(track.evidence) / params_.track.max_evidence;
+  constexpr double kDecimeter_m = 0.1;
+  rung.evaluation = bar.num_inliers / ((1.0 + bar.num_outliers) * bar.length_m() / kDecimeter_m);
+  rung.num_inliers = bar.num_inliers;
+  rung.num_outliers = bar.num_outliers;
+  rung.end0_m = bar.end0_m;
+  rung.end1_m = bar.end1_m;
+  rung.radius_m = bar.radius_m;
+  rung.sag_m = bar.sag_m;
+  rung.flags = track.flags(params_.measure);
+  rung.covariance_m2 = track.covariance_m2(params_.track);
+  return rung;
+}
+
+void DefaultMode::write_rails(const Detections& found, LadderEstimate& estimate,
+                              std::vector<RailLine>& rails) const {
+  rails.clear();
+  const auto add = [&](const MeasuredRail& rail) {
+    rails.push_back({rail.axis.at(rail.from_m), rail.axis.at(rail.to_m), rail.half_width_m});
+  };
+  // A confirmed ladder's own rails first, then whatever else stands upright now.
+  for (const MeasuredRail& rail : confirmation_.rails()) add(rail);
+  for (std::size_t i = found.is_ladder ? 2 : 0; i < found.rails.size(); ++i) {
+    const auto known = [&](const MeasuredRail& rail) {
+      return rail.axis.distance(found.rails[i].axis.origin_m) < params_.bar.rail_merge_offset_m;
+    };
+    const auto& own = confirmation_.rails();
+    if (std::none_of(own.begin(), own.end(), known)) add(found.rails[i]);
+  }
+  estimate.rails.clear();
+  for (const RailLine& rail : rails) estimate.rails.push_back({rail.end0_m, rail.end1_m});
+}
+
+}  // namespace ladder

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Confirms a ladder on several frames: proven rungs at equal distances. Its spacing is the slope of
+// heights over rung numbers, so missing rungs do no harm.
+#pragma once
+
+#include <vector>
+
+#include "ladder/bar_tracker.h"
+#include "ladder/params.h"
+
+namespace ladder {
+
+struct Spacing {
+  int num_rungs = 0;
+  double spacing_m = 0.0;
+  double sigma_m = 0.0;  ///< standard error
+};
+
+/// Least-squares spacing of heights (ascending on return). num_rungs = 0 when fewer than three
+/// stand at whole multiples of one distance.
+Spacing fit_spacing(std::vector<double>& heights_m, const LadderTestParams& params);
+
+class LadderConfirmation {
+ public:
+  explicit LadderConfirmation(const LadderParams& params);
+
+  /// Rails are those of the frame; kept, averaged, while a ladder stands.
+  LadderState update(const Detections& found, const std::vector<BarTrack>& tracks);
+  void reset();
+
+  const Spacing& spacing() const { return spacing_; }
+  const std::vector<MeasuredRail>& rails() const { return rails_; }  ///< left, right; or none
+
+ private:
+  void follow_rails(const Detections& found);
+  Spacing measure(const std::vector<BarTrack>& tracks);
+
+  LadderParams params_;
+  LadderState state_ = LadderState::kUnknown;
+  Spacing spacing_;
+  std::vector<MeasuredRail> rails_;
+  std::vector<double> heights_m_;
+  int num_rail_frames_ = 0;
+};
+
+}  // namespace ladder
