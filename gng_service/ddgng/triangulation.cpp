@@ -17,7 +17,7 @@ constexpr int kMaxFacesInMessage = 524288;
 constexpr double kMaxFaceArea_m2 = 1e6;  // a larger one is no measurement and would not fit a float
 
 double distance_m(const Topology& topology, int a, int b) {
-  return (topology.node_m(a) - topology.node_m(b)).cast<double>().norm();
+  return (topology.node_m(a).cast<double>() - topology.node_m(b).cast<double>()).norm();
 }
 
 bool is_before(const Edge& left, const Edge& right) {
