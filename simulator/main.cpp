@@ -15,6 +15,8 @@
 #include <CLI/CLI.hpp>
 #include <lcm/lcm-cpp.hpp>
 
+#include "runtime/bus.h"
+#include "runtime/channels.h"
 #include "simulator/simulation.h"
 
 namespace {
@@ -38,15 +40,14 @@ struct Arguments {
   std::string depth_pgm_path;
 };
 
-std::string channel_of(const simulator::Message& message) {
-  struct Visitor {
-    std::string operator()(const ladder_msgs::tof_frame_t& frame) const {
-      return "LADDER_TOF_" + std::to_string(static_cast<int>(frame.head));
-    }
-    std::string operator()(const ladder_msgs::imu_t&) const { return "LADDER_IMU"; }
-    std::string operator()(const ladder_msgs::truth_t&) const { return "LADDER_TRUTH"; }
-  };
-  return std::visit(Visitor{}, message);
+const auto& channel_of(const ladder_msgs::tof_frame_t& frame) {
+  return runtime::channels::kTof[static_cast<std::size_t>(frame.head)];
+}
+const auto& channel_of(const ladder_msgs::imu_t&) {
+  return runtime::channels::kImu;
+}
+const auto& channel_of(const ladder_msgs::truth_t&) {
+  return runtime::channels::kTruth;
 }
 
 std::vector<std::uint8_t> encoded(const simulator::Message& message) {
@@ -142,7 +143,7 @@ int write_log(const Arguments& arguments) {
       lcm::LogEvent event{};
       event.eventnum = event_number++;
       event.timestamp = simulator::utime_us(message);
-      event.channel = channel_of(message);
+      event.channel = std::visit([](const auto& value) { return channel_of(value).name; }, message);
       event.datalen = static_cast<int>(bytes.size());
       event.data = bytes.data();
       if (log.writeEvent(&event) != 0) {
@@ -163,14 +164,7 @@ std::int64_t system_utime_us() {
 }
 
 int publish_live(const Arguments& arguments) {
-  lcm::LCM bus(arguments.url);
-  if (!bus.good()) {
-    std::fprintf(stderr,
-                 "ladder_simulator: no LCM at \"%s\"; is there a multicast route? "
-                 "(ip route add 224.0.0.0/4 dev lo)\n",
-                 arguments.url.c_str());
-    return kExitNoDevice;
-  }
+  runtime::Bus bus(arguments.url);
   simulator::Simulation simulation(arguments.simulation);
   const std::int64_t end = end_utime_us(arguments);
   while (stop_requested == 0 && simulation.next_utime_us() <= end) {
@@ -182,8 +176,7 @@ int publish_live(const Arguments& arguments) {
       continue;
     }
     for (const auto& message : simulation.advance_to(simulation.next_utime_us())) {
-      const std::vector<std::uint8_t> bytes = encoded(message);
-      bus.publish(channel_of(message), bytes.data(), static_cast<unsigned>(bytes.size()));
+      std::visit([&bus](const auto& value) { bus.publish(channel_of(value), value); }, message);
     }
   }
   return 0;
@@ -224,5 +217,8 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "ladder_simulator: %s\n", error.what());
     return kExitArguments;
+  } catch (const runtime::BusError& error) {
+    std::fprintf(stderr, "ladder_simulator: %s\n", error.what());
+    return kExitNoDevice;
   }
 }
