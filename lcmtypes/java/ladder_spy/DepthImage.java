@@ -6,18 +6,14 @@ import java.awt.Dimension;
 import java.awt.Graphics;
 import java.awt.event.ActionEvent;
 import java.awt.image.BufferedImage;
-import java.io.IOException;
-import java.util.concurrent.atomic.AtomicBoolean;
 import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
 import javax.swing.JInternalFrame;
 import javax.swing.JPanel;
+import javax.swing.Timer;
 
 import ladder_msgs.tof_frame_t;
-import lcm.lcm.LCM;
-import lcm.lcm.LCMDataInputStream;
-import lcm.lcm.LCMSubscriber;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
 
@@ -34,7 +30,7 @@ public final class DepthImage implements SpyPlugin {
             @Override
             public void actionPerformed(ActionEvent event) {
                 final JInternalFrame window = new JInternalFrame("Depth " + channel.name, true, true);
-                window.add(new View(channel.name));
+                window.add(new View(channel));
                 window.pack();
                 window.setVisible(true);
                 desktop.add(window);
@@ -42,14 +38,14 @@ public final class DepthImage implements SpyPlugin {
         };
     }
 
-    /** The newest frame of one channel. */
-    private static final class View extends JPanel implements LCMSubscriber {
+    /** The newest frame that the spy decoded on one channel. */
+    private static final class View extends JPanel {
+        private static final int PERIOD_MS = 66;
         private static final int NO_RETURN = new Color(0, 0, 60).getRGB();
-        private final AtomicBoolean isSubscribed = new AtomicBoolean();
-        private final String channel;
-        private BufferedImage image;
+        private final ChannelData channel;
+        private final Timer timer = new Timer(PERIOD_MS, event -> repaint());
 
-        View(String channel) {
+        View(ChannelData channel) {
             this.channel = channel;
             setPreferredSize(new Dimension(448, 342));
         }
@@ -57,33 +53,32 @@ public final class DepthImage implements SpyPlugin {
         @Override
         public void addNotify() {
             super.addNotify();
-            if (isSubscribed.compareAndSet(false, true)) LCM.getSingleton().subscribe(channel, this);
+            timer.start();
         }
 
         @Override
         public void removeNotify() {
-            if (isSubscribed.compareAndSet(true, false)) LCM.getSingleton().unsubscribe(channel, this);
+            timer.stop();
             super.removeNotify();
         }
 
         @Override
-        public void messageReceived(LCM lcm, String name, LCMDataInputStream bytes) {
-            try {
-                draw(new tof_frame_t(bytes));
-            } catch (IOException | RuntimeException damaged) {
-                return; // the spy itself counts undecodable messages
+        protected void paintComponent(Graphics graphics) {
+            super.paintComponent(graphics);
+            if (channel.last instanceof tof_frame_t) {
+                graphics.drawImage(imageOf((tof_frame_t) channel.last), 0, 0, getWidth(), getHeight(), null);
             }
-            repaint();
         }
 
-        private void draw(tof_frame_t frame) {
-            final BufferedImage next = new BufferedImage(frame.width_px, frame.height_px, BufferedImage.TYPE_INT_RGB);
-            for (int i = 0; i < frame.num_pixels; ++i) {
-                next.setRGB(i % frame.width_px, i / frame.width_px, color(frame.depth_mm[i], frame.range_max_m));
+        private static BufferedImage imageOf(tof_frame_t frame) {
+            final int width = Math.max(frame.width_px, 1);
+            final int height = Math.max(frame.height_px, 1);
+            final BufferedImage image = new BufferedImage(width, height, BufferedImage.TYPE_INT_RGB);
+            final int pixels = Math.min(frame.num_pixels, width * height);
+            for (int i = 0; i < pixels; ++i) {
+                image.setRGB(i % width, i / width, color(frame.depth_mm[i], frame.range_max_m));
             }
-            synchronized (this) {
-                image = next;
-            }
+            return image;
         }
 
         private static int color(int depthMm, double rangeMaxM) {
@@ -91,14 +86,6 @@ public final class DepthImage implements SpyPlugin {
             final double far = Math.min(1.0, 0.001 * depthMm / rangeMaxM);
             final int grey = (int) Math.round(255.0 * (1.0 - 0.9 * far));
             return new Color(grey, grey, grey).getRGB();
-        }
-
-        @Override
-        protected void paintComponent(Graphics graphics) {
-            super.paintComponent(graphics);
-            synchronized (this) {
-                if (image != null) graphics.drawImage(image, 0, 0, getWidth(), getHeight(), null);
-            }
         }
     }
 }
