@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tof/params.h"
+
+namespace tof {
+namespace {
+
+/// False for NaN.
+bool within(double value, double low, double high) {
+  return value >= low && value <= high;
+}
+
+std::string check_filter(const FilterParams& p) {
+  if (!within(p.min_confidence, 0, 255)) return "filter.min_confidence must be 0..255";
+  if (!within(p.flying_step_m, 0.001, 10.0)) return "filter.flying_step_m must be 0.001..10";
+  if (!within(p.flying_step_ratio, 0.0, 0.49)) return "filter.flying_step_ratio must be 0..0.49";
+  if (!within(p.white_confidence_at_1_m, 0.0, 1e6)) {
+    return "filter.white_confidence_at_1_m must be 0..1e6";
+  }
+  return "";
+}
+
+std::string check_heads(const HeadParams& p) {
+  if (!within(p.period_s, 0.005, 1.0)) return "heads.period_s must be 0.005..1";
+  if (!within(p.dead_periods, 1.5, 100.0)) return "heads.dead_periods must be 1.5..100";
+  if (!within(p.backward_reset_s, 0.0, 3600.0)) return "heads.backward_reset_s must be 0..3600";
+  if (!within(p.forward_reset_s, 0.1, 1e6)) return "heads.forward_reset_s must be 0.1..1e6";
+  return "";
+}
+
+std::string check_gravity(const GravityParams& p) {
+  if (!within(p.time_constant_s, 0.01, 100.0)) return "gravity.time_constant_s must be 0.01..100";
+  if (!within(p.gravity_m_s2, 1.0, 20.0)) return "gravity.gravity_m_s2 must be 1..20";
+  if (!(p.trust_m_s2 > 0.0 && p.trust_m_s2 < p.gravity_m_s2)) {
+    return "gravity.trust_m_s2 must be above 0 and below gravity.gravity_m_s2";
+  }
+  if (!within(p.max_gap_s, 0.01, 10.0)) return "gravity.max_gap_s must be 0.01..10";
+  return "";
+}
+
+std::string check_poses(const PoseParams& p) {
+  if (!within(p.capacity, 2, 100000)) return "poses.capacity must be 2..100000";
+  if (!within(p.max_gap_s, 0.001, 10.0)) return "poses.max_gap_s must be 0.001..10";
+  if (!within(p.max_extrapolation_s, 0.0, 10.0)) return "poses.max_extrapolation_s must be 0..10";
+  return "";
+}
+
+}  // namespace
+
+std::string check(const TofParams& params) {
+  const std::string faults[] = {check_filter(params.filter), check_heads(params.heads),
+                                check_gravity(params.gravity), check_poses(params.poses)};
+  for (const std::string& fault : faults) {
+    if (!fault.empty()) return fault;
+  }
+  if (!within(params.max_points, 1, 400000)) return "max_points must be 1..400000";
+  return "";
+}
+
+}  // namespace tof
