@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <vector>
+
+#include "runtime/columns.h"
 
 namespace gng_service {
 namespace {
@@ -11,21 +12,8 @@ namespace {
 using ddgng::Topology;
 using ladder_msgs::point_cloud_t;
 using ladder_msgs::topology_t;
-
-/// into[i] = get(from[i])
-template <class To, class From, class Get>
-void copy(const std::vector<From>& from, std::vector<To>& into, Get get) {
-  into.clear();
-  std::transform(from.begin(), from.end(), std::back_inserter(into),
-                 [&](const From& element) { return static_cast<To>(get(element)); });
-}
-
-template <class T>
-std::int32_t count(const std::vector<T>& elements) {
-  return static_cast<std::int32_t>(elements.size());
-}
-
-constexpr auto kItself = [](const auto& element) { return element; };
+using runtime::count;
+using runtime::fill_column;
 
 void copy_nodes(const Topology& topology, topology_t& m) {
   m.num_nodes = topology.num_nodes();
@@ -36,7 +24,7 @@ void copy_nodes(const Topology& topology, topology_t& m) {
   m.node_strength = topology.node_strength;
   m.node_error_m2 = topology.node_error_m2;
   m.node_utility_m2 = topology.node_utility_m2;
-  copy(topology.node_class, m.node_class, kItself);
+  fill_column(m.node_class, topology.node_class, [](ddgng::Class x) { return x; });
   m.node_object = topology.node_object;
   m.node_plane = topology.node_plane;
 }
@@ -44,67 +32,68 @@ void copy_nodes(const Topology& topology, topology_t& m) {
 void copy_moments(const Topology& topology, topology_t& m) {
   using ddgng::Moment;
   m.num_moments = count(topology.moments);
-  copy(topology.moments, m.moment_node, [](const Moment& x) { return x.node; });
-  copy(topology.moments, m.moment_head, [](const Moment& x) { return x.head; });
-  copy(topology.moments, m.moment_weight, [](const Moment& x) { return x.weight; });
-  copy(topology.moments, m.moment_x_m, [](const Moment& x) { return x.mean_m.x(); });
-  copy(topology.moments, m.moment_y_m, [](const Moment& x) { return x.mean_m.y(); });
-  copy(topology.moments, m.moment_z_m, [](const Moment& x) { return x.mean_m.z(); });
-  copy(topology.moments, m.moment_xx_m2, [](const Moment& x) { return x.xx_m2; });
-  copy(topology.moments, m.moment_xy_m2, [](const Moment& x) { return x.xy_m2; });
-  copy(topology.moments, m.moment_xz_m2, [](const Moment& x) { return x.xz_m2; });
-  copy(topology.moments, m.moment_yy_m2, [](const Moment& x) { return x.yy_m2; });
-  copy(topology.moments, m.moment_yz_m2, [](const Moment& x) { return x.yz_m2; });
-  copy(topology.moments, m.moment_zz_m2, [](const Moment& x) { return x.zz_m2; });
+  fill_column(m.moment_node, topology.moments, [](const Moment& x) { return x.node; });
+  fill_column(m.moment_head, topology.moments, [](const Moment& x) { return x.head; });
+  fill_column(m.moment_weight, topology.moments, [](const Moment& x) { return x.weight; });
+  fill_column(m.moment_x_m, topology.moments, [](const Moment& x) { return x.mean_m.x(); });
+  fill_column(m.moment_y_m, topology.moments, [](const Moment& x) { return x.mean_m.y(); });
+  fill_column(m.moment_z_m, topology.moments, [](const Moment& x) { return x.mean_m.z(); });
+  fill_column(m.moment_xx_m2, topology.moments, [](const Moment& x) { return x.xx_m2; });
+  fill_column(m.moment_xy_m2, topology.moments, [](const Moment& x) { return x.xy_m2; });
+  fill_column(m.moment_xz_m2, topology.moments, [](const Moment& x) { return x.xz_m2; });
+  fill_column(m.moment_yy_m2, topology.moments, [](const Moment& x) { return x.yy_m2; });
+  fill_column(m.moment_yz_m2, topology.moments, [](const Moment& x) { return x.yz_m2; });
+  fill_column(m.moment_zz_m2, topology.moments, [](const Moment& x) { return x.zz_m2; });
 }
 
 void copy_edges_and_faces(const Topology& topology, topology_t& m) {
   using ddgng::Edge;
   using ddgng::Face;
   m.num_edges = count(topology.edges);
-  copy(topology.edges, m.edge_a, [](const Edge& x) { return x.a; });
-  copy(topology.edges, m.edge_b, [](const Edge& x) { return x.b; });
+  fill_column(m.edge_a, topology.edges, [](const Edge& x) { return x.a; });
+  fill_column(m.edge_b, topology.edges, [](const Edge& x) { return x.b; });
   m.num_faces = count(topology.faces);
-  copy(topology.faces, m.face_a, [](const Face& x) { return x.nodes[0]; });
-  copy(topology.faces, m.face_b, [](const Face& x) { return x.nodes[1]; });
-  copy(topology.faces, m.face_c, [](const Face& x) { return x.nodes[2]; });
-  copy(topology.faces, m.face_label, [](const Face& x) { return x.label; });
+  fill_column(m.face_a, topology.faces, [](const Face& x) { return x.nodes[0]; });
+  fill_column(m.face_b, topology.faces, [](const Face& x) { return x.nodes[1]; });
+  fill_column(m.face_c, topology.faces, [](const Face& x) { return x.nodes[2]; });
+  fill_column(m.face_label, topology.faces, [](const Face& x) { return x.label; });
 }
 
 void copy_labels_and_planes(const Topology& topology, topology_t& m) {
   using ddgng::Label;
   using ddgng::Plane;
   m.num_labels = count(topology.labels);
-  copy(topology.labels, m.label_class, [](const Label& x) { return x.label_class; });
-  copy(topology.labels, m.label_normal_x, [](const Label& x) { return x.normal.x(); });
-  copy(topology.labels, m.label_normal_y, [](const Label& x) { return x.normal.y(); });
-  copy(topology.labels, m.label_normal_z, [](const Label& x) { return x.normal.z(); });
-  copy(topology.labels, m.label_area_m2, [](const Label& x) { return x.area_m2; });
-  copy(topology.labels, m.label_safety, [](const Label& x) { return x.safety; });
+  fill_column(m.label_class, topology.labels, [](const Label& x) { return x.label_class; });
+  fill_column(m.label_normal_x, topology.labels, [](const Label& x) { return x.normal.x(); });
+  fill_column(m.label_normal_y, topology.labels, [](const Label& x) { return x.normal.y(); });
+  fill_column(m.label_normal_z, topology.labels, [](const Label& x) { return x.normal.z(); });
+  fill_column(m.label_area_m2, topology.labels, [](const Label& x) { return x.area_m2; });
+  fill_column(m.label_safety, topology.labels, [](const Label& x) { return x.safety; });
   m.num_planes = count(topology.planes);
-  copy(topology.planes, m.plane_normal_x, [](const Plane& x) { return x.normal.x(); });
-  copy(topology.planes, m.plane_normal_y, [](const Plane& x) { return x.normal.y(); });
-  copy(topology.planes, m.plane_normal_z, [](const Plane& x) { return x.normal.z(); });
-  copy(topology.planes, m.plane_offset_m, [](const Plane& x) { return x.offset_m; });
-  copy(topology.planes, m.plane_class, [](const Plane& x) { return x.plane_class; });
+  fill_column(m.plane_normal_x, topology.planes, [](const Plane& x) { return x.normal.x(); });
+  fill_column(m.plane_normal_y, topology.planes, [](const Plane& x) { return x.normal.y(); });
+  fill_column(m.plane_normal_z, topology.planes, [](const Plane& x) { return x.normal.z(); });
+  fill_column(m.plane_offset_m, topology.planes, [](const Plane& x) { return x.offset_m; });
+  fill_column(m.plane_class, topology.planes, [](const Plane& x) { return x.plane_class; });
 }
 
 void copy_objects(const Topology& topology, topology_t& m) {
   using ddgng::Object;
   m.num_objects = count(topology.objects);
-  copy(topology.objects, m.object_suspected, [](const Object& x) { return x.suspected ? 1 : 0; });
-  copy(topology.objects, m.object_x_m, [](const Object& x) { return x.center_m.x(); });
-  copy(topology.objects, m.object_y_m, [](const Object& x) { return x.center_m.y(); });
-  copy(topology.objects, m.object_z_m, [](const Object& x) { return x.center_m.z(); });
-  copy(topology.objects, m.object_size_x_m, [](const Object& x) { return x.size_m.x(); });
-  copy(topology.objects, m.object_size_y_m, [](const Object& x) { return x.size_m.y(); });
-  copy(topology.objects, m.object_size_z_m, [](const Object& x) { return x.size_m.z(); });
-  copy(topology.objects, m.object_velocity_x_m_s,
-       [](const Object& x) { return x.velocity_m_s.x(); });
-  copy(topology.objects, m.object_velocity_y_m_s,
-       [](const Object& x) { return x.velocity_m_s.y(); });
-  copy(topology.objects, m.object_velocity_z_m_s,
-       [](const Object& x) { return x.velocity_m_s.z(); });
+  fill_column(m.object_suspected, topology.objects,
+              [](const Object& x) { return x.suspected ? 1 : 0; });
+  fill_column(m.object_x_m, topology.objects, [](const Object& x) { return x.center_m.x(); });
+  fill_column(m.object_y_m, topology.objects, [](const Object& x) { return x.center_m.y(); });
+  fill_column(m.object_z_m, topology.objects, [](const Object& x) { return x.center_m.z(); });
+  fill_column(m.object_size_x_m, topology.objects, [](const Object& x) { return x.size_m.x(); });
+  fill_column(m.object_size_y_m, topology.objects, [](const Object& x) { return x.size_m.y(); });
+  fill_column(m.object_size_z_m, topology.objects, [](const Object& x) { return x.size_m.z(); });
+  fill_column(m.object_velocity_x_m_s, topology.objects,
+              [](const Object& x) { return x.velocity_m_s.x(); });
+  fill_column(m.object_velocity_y_m_s, topology.objects,
+              [](const Object& x) { return x.velocity_m_s.y(); });
+  fill_column(m.object_velocity_z_m_s, topology.objects,
+              [](const Object& x) { return x.velocity_m_s.z(); });
 }
 
 }  // namespace

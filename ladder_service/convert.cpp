@@ -1,37 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ladder_service/convert.h"
 
-#include <algorithm>
-#include <iterator>
 #include <vector>
 
 #include "ladder_msgs/point_cloud_t.hpp"
+#include "runtime/columns.h"
 
 namespace ladder_service {
 namespace {
 
 using ladder_msgs::ladder_t;
 using ladder_msgs::topology_t;
-
-/// into[i] = get(from[i])
-template <class To, class From, class Get>
-void copy(const std::vector<From>& from, std::vector<To>& into, Get get) {
-  into.clear();
-  std::transform(from.begin(), from.end(), std::back_inserter(into),
-                 [&](const From& element) { return static_cast<To>(get(element)); });
-}
-
-template <class T>
-std::int32_t count(const std::vector<T>& elements) {
-  return static_cast<std::int32_t>(elements.size());
-}
+using runtime::count;
+using runtime::fill_column;
 
 void copy_nodes(const topology_t& m, ladder::NodeCloud& cloud) {
   cloud.id = m.node_id;
   cloud.x_m = m.node_x_m;
   cloud.y_m = m.node_y_m;
   cloud.z_m = m.node_z_m;
-  copy(m.node_class, cloud.node_class, [](std::uint8_t value) { return value; });
+  fill_column(cloud.node_class, m.node_class, [](std::uint8_t value) { return value; });
   cloud.plane = m.node_plane;
 }
 
@@ -72,58 +60,58 @@ void copy_structure(const topology_t& m, ladder::NodeCloud& cloud) {
 void copy_rungs(const std::vector<ladder::Rung>& rungs, ladder_t& m) {
   using ladder::Rung;
   m.num_rungs = count(rungs);
-  copy(rungs, m.rung_id, [](const Rung& x) { return x.id; });
-  copy(rungs, m.rung_state, [](const Rung& x) { return x.state; });
-  copy(rungs, m.rung_age, [](const Rung& x) { return x.age; });
-  copy(rungs, m.rung_confidence, [](const Rung& x) { return x.confidence; });
-  copy(rungs, m.rung_evaluation, [](const Rung& x) { return x.evaluation; });
-  copy(rungs, m.rung_inliers, [](const Rung& x) { return x.num_inliers; });
-  copy(rungs, m.rung_outliers, [](const Rung& x) { return x.num_outliers; });
-  copy(rungs, m.rung_x0_m, [](const Rung& x) { return x.end0_m.x(); });
-  copy(rungs, m.rung_y0_m, [](const Rung& x) { return x.end0_m.y(); });
-  copy(rungs, m.rung_z0_m, [](const Rung& x) { return x.end0_m.z(); });
-  copy(rungs, m.rung_x1_m, [](const Rung& x) { return x.end1_m.x(); });
-  copy(rungs, m.rung_y1_m, [](const Rung& x) { return x.end1_m.y(); });
-  copy(rungs, m.rung_z1_m, [](const Rung& x) { return x.end1_m.z(); });
-  copy(rungs, m.rung_radius_m, [](const Rung& x) { return x.radius_m; });
-  copy(rungs, m.rung_sag_m, [](const Rung& x) { return x.sag_m; });
-  copy(rungs, m.rung_flags, [](const Rung& x) { return x.flags; });
-  copy(rungs, m.rung_cov_xx_m2, [](const Rung& x) { return x.covariance_m2(0, 0); });
-  copy(rungs, m.rung_cov_xy_m2, [](const Rung& x) { return x.covariance_m2(0, 1); });
-  copy(rungs, m.rung_cov_xz_m2, [](const Rung& x) { return x.covariance_m2(0, 2); });
-  copy(rungs, m.rung_cov_yy_m2, [](const Rung& x) { return x.covariance_m2(1, 1); });
-  copy(rungs, m.rung_cov_yz_m2, [](const Rung& x) { return x.covariance_m2(1, 2); });
-  copy(rungs, m.rung_cov_zz_m2, [](const Rung& x) { return x.covariance_m2(2, 2); });
+  fill_column(m.rung_id, rungs, [](const Rung& x) { return x.id; });
+  fill_column(m.rung_state, rungs, [](const Rung& x) { return x.state; });
+  fill_column(m.rung_age, rungs, [](const Rung& x) { return x.age; });
+  fill_column(m.rung_confidence, rungs, [](const Rung& x) { return x.confidence; });
+  fill_column(m.rung_evaluation, rungs, [](const Rung& x) { return x.evaluation; });
+  fill_column(m.rung_inliers, rungs, [](const Rung& x) { return x.num_inliers; });
+  fill_column(m.rung_outliers, rungs, [](const Rung& x) { return x.num_outliers; });
+  fill_column(m.rung_x0_m, rungs, [](const Rung& x) { return x.end0_m.x(); });
+  fill_column(m.rung_y0_m, rungs, [](const Rung& x) { return x.end0_m.y(); });
+  fill_column(m.rung_z0_m, rungs, [](const Rung& x) { return x.end0_m.z(); });
+  fill_column(m.rung_x1_m, rungs, [](const Rung& x) { return x.end1_m.x(); });
+  fill_column(m.rung_y1_m, rungs, [](const Rung& x) { return x.end1_m.y(); });
+  fill_column(m.rung_z1_m, rungs, [](const Rung& x) { return x.end1_m.z(); });
+  fill_column(m.rung_radius_m, rungs, [](const Rung& x) { return x.radius_m; });
+  fill_column(m.rung_sag_m, rungs, [](const Rung& x) { return x.sag_m; });
+  fill_column(m.rung_flags, rungs, [](const Rung& x) { return x.flags; });
+  fill_column(m.rung_cov_xx_m2, rungs, [](const Rung& x) { return x.covariance_m2(0, 0); });
+  fill_column(m.rung_cov_xy_m2, rungs, [](const Rung& x) { return x.covariance_m2(0, 1); });
+  fill_column(m.rung_cov_xz_m2, rungs, [](const Rung& x) { return x.covariance_m2(0, 2); });
+  fill_column(m.rung_cov_yy_m2, rungs, [](const Rung& x) { return x.covariance_m2(1, 1); });
+  fill_column(m.rung_cov_yz_m2, rungs, [](const Rung& x) { return x.covariance_m2(1, 2); });
+  fill_column(m.rung_cov_zz_m2, rungs, [](const Rung& x) { return x.covariance_m2(2, 2); });
 }
 
 void copy_rails(const std::vector<ladder::Rail>& rails, ladder_t& m) {
   using ladder::Rail;
   m.num_rails = count(rails);
-  copy(rails, m.rail_x0_m, [](const Rail& x) { return x.end0_m.x(); });
-  copy(rails, m.rail_y0_m, [](const Rail& x) { return x.end0_m.y(); });
-  copy(rails, m.rail_z0_m, [](const Rail& x) { return x.end0_m.z(); });
-  copy(rails, m.rail_x1_m, [](const Rail& x) { return x.end1_m.x(); });
-  copy(rails, m.rail_y1_m, [](const Rail& x) { return x.end1_m.y(); });
-  copy(rails, m.rail_z1_m, [](const Rail& x) { return x.end1_m.z(); });
+  fill_column(m.rail_x0_m, rails, [](const Rail& x) { return x.end0_m.x(); });
+  fill_column(m.rail_y0_m, rails, [](const Rail& x) { return x.end0_m.y(); });
+  fill_column(m.rail_z0_m, rails, [](const Rail& x) { return x.end0_m.z(); });
+  fill_column(m.rail_x1_m, rails, [](const Rail& x) { return x.end1_m.x(); });
+  fill_column(m.rail_y1_m, rails, [](const Rail& x) { return x.end1_m.y(); });
+  fill_column(m.rail_z1_m, rails, [](const Rail& x) { return x.end1_m.z(); });
 }
 
 void copy_affordances(const ladder::LadderEstimate& estimate, ladder_t& m) {
   using ladder::Grasp;
   using ladder::Interval;
   m.num_intervals = count(estimate.intervals);
-  copy(estimate.intervals, m.interval_rung, [](const Interval& x) { return x.rung; });
-  copy(estimate.intervals, m.interval_from_m, [](const Interval& x) { return x.from_m; });
-  copy(estimate.intervals, m.interval_to_m, [](const Interval& x) { return x.to_m; });
-  copy(estimate.intervals, m.interval_reason, [](const Interval& x) { return x.reason; });
+  fill_column(m.interval_rung, estimate.intervals, [](const Interval& x) { return x.rung; });
+  fill_column(m.interval_from_m, estimate.intervals, [](const Interval& x) { return x.from_m; });
+  fill_column(m.interval_to_m, estimate.intervals, [](const Interval& x) { return x.to_m; });
+  fill_column(m.interval_reason, estimate.intervals, [](const Interval& x) { return x.reason; });
   m.num_grasps = count(estimate.grasps);
-  copy(estimate.grasps, m.grasp_rung, [](const Grasp& x) { return x.rung; });
-  copy(estimate.grasps, m.grasp_x_m, [](const Grasp& x) { return x.position_m.x(); });
-  copy(estimate.grasps, m.grasp_y_m, [](const Grasp& x) { return x.position_m.y(); });
-  copy(estimate.grasps, m.grasp_z_m, [](const Grasp& x) { return x.position_m.z(); });
-  copy(estimate.grasps, m.grasp_approach_x, [](const Grasp& x) { return x.approach.x(); });
-  copy(estimate.grasps, m.grasp_approach_y, [](const Grasp& x) { return x.approach.y(); });
-  copy(estimate.grasps, m.grasp_approach_z, [](const Grasp& x) { return x.approach.z(); });
-  copy(estimate.grasps, m.grasp_confidence, [](const Grasp& x) { return x.confidence; });
+  fill_column(m.grasp_rung, estimate.grasps, [](const Grasp& x) { return x.rung; });
+  fill_column(m.grasp_x_m, estimate.grasps, [](const Grasp& x) { return x.position_m.x(); });
+  fill_column(m.grasp_y_m, estimate.grasps, [](const Grasp& x) { return x.position_m.y(); });
+  fill_column(m.grasp_z_m, estimate.grasps, [](const Grasp& x) { return x.position_m.z(); });
+  fill_column(m.grasp_approach_x, estimate.grasps, [](const Grasp& x) { return x.approach.x(); });
+  fill_column(m.grasp_approach_y, estimate.grasps, [](const Grasp& x) { return x.approach.y(); });
+  fill_column(m.grasp_approach_z, estimate.grasps, [](const Grasp& x) { return x.approach.z(); });
+  fill_column(m.grasp_confidence, estimate.grasps, [](const Grasp& x) { return x.confidence; });
 }
 
 }  // namespace

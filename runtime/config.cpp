@@ -118,7 +118,7 @@ void ConfigTable::require(const std::string& violation) const {
   // Name the place of the first key that the violation speaks of and that a file or --set gave.
   std::string word;
   for (const char c : violation + " ") {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.') {
       word += c;
       continue;
     }
