@@ -2,8 +2,8 @@
 // [sensor] of the configuration as parameters of the library.
 #pragma once
 
-#include "tof/params.h"
 #include "runtime/config.h"
+#include "tof/params.h"
 
 namespace sensor_service {
 

@@ -2,7 +2,6 @@
 #include "sensor_service/lcm_source.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "sensor_service/convert.h"
 
@@ -25,16 +24,14 @@ void LcmSource::poll(const base::Now& now, sources::FrameSink& sink) {
     sink.on_imu(to_imu_sample(*sample));
   }
   std::array<const ladder_msgs::tof_frame_t*, tof::kNumHeads> arrived{};
-  int num_arrived = 0;
-  for (auto* mailbox : frames_) {
-    if (const ladder_msgs::tof_frame_t* frame = mailbox->take(now.utime_us)) {
-      arrived[num_arrived++] = frame;
-    }
-  }
-  std::sort(arrived.begin(), arrived.begin() + num_arrived, [](const auto* a, const auto* b) {
-    return std::tie(a->utime, a->head) < std::tie(b->utime, b->head);
+  for (int head = 0; head < tof::kNumHeads; ++head)
+    arrived[head] = frames_[head]->take(now.utime_us);
+  std::stable_sort(arrived.begin(), arrived.end(), [](const auto* a, const auto* b) {
+    return a != nullptr && (b == nullptr || a->utime < b->utime);
   });
-  for (int i = 0; i < num_arrived; ++i) sink.on_frame(to_depth_frame(*arrived[i]));
+  for (const ladder_msgs::tof_frame_t* frame : arrived) {
+    if (frame != nullptr) sink.on_frame(to_depth_frame(*frame));
+  }
 }
 
 }  // namespace sensor_service

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Head frames and inertial samples from LCM: a simulator, a recording, or a process that owns the cameras.
+// Head frames and inertial samples from LCM: a simulator, a recording, or a process that owns the
+// cameras.
 #pragma once
 
 #include <array>

@@ -108,11 +108,12 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
 }  // namespace
 
 runtime::ServiceDescription description() {
-  return {
-      .name = "sensor",
-      .number = health_t::SERVICE_SENSOR,
-      .purpose = "sensor_service: depth frames, IMU and pose in, point clouds out",
-      .make = [](runtime::ServiceContext context) { return std::make_unique<SensorService>(context); }};
+  return {.name = "sensor",
+          .number = health_t::SERVICE_SENSOR,
+          .purpose = "sensor_service: depth frames, IMU and pose in, point clouds out",
+          .make = [](runtime::ServiceContext context) {
+            return std::make_unique<SensorService>(context);
+          }};
 }
 
 }  // namespace sensor_service
