@@ -18,13 +18,18 @@ ALLOWED = {
     "gng_service": ["base/", "runtime/", "ladder_msgs/", "ddgng/", "gng_service/"],
     "ladder_service/ladder": ["base/", "ladder/"],
     "ladder_service": ["base/", "runtime/", "ladder_msgs/", "ladder/", "ladder_service/"],
+    "climb_controller/climb": ["base/", "climb/"],
+    "climb_controller/can": ["base/", "can/"],
+    "climb_controller/gpio": ["base/", "gpio/"],
+    "climb_controller": ["base/", "runtime/", "ladder_msgs/", "climb/", "can/", "gpio/", "climb_controller/"],
     "simulator": ["base/", "runtime/", "ladder_msgs/", "simulator/"],
     "robot_in_a_box": ["base/", "runtime/", "ladder_msgs/", "sensor_service/", "gng_service/", "ladder_service/", "simulator/",
                        "robot_in_a_box/"],
 }
-PURE = ("sensor_service/tof", "gng_service/ddgng", "ladder_service/ladder")
+PURE = ("sensor_service/tof", "gng_service/ddgng", "ladder_service/ladder", "climb_controller/climb")
 # What an algorithm library may include in brackets besides the C++ standard library.
-PURE_BRACKETED = {"sensor_service/tof": ("Eigen/", "hwy/"), "gng_service/ddgng": ("Eigen/", "hwy/"), "ladder_service/ladder": ("Eigen/",)}
+PURE_BRACKETED = {"sensor_service/tof": ("Eigen/", "hwy/"), "gng_service/ddgng": ("Eigen/", "hwy/"), "ladder_service/ladder": ("Eigen/",),
+                   "climb_controller/climb": ("Eigen/",)}
 IMPURE_STANDARD = {"chrono", "ctime", "fstream", "iostream", "thread", "mutex", "condition_variable", "future", "filesystem", "random",
                    "unordered_map", "unordered_set", "cstdio"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.MULTILINE)
