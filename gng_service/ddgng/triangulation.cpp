@@ -35,6 +35,8 @@ Triangulation::Triangulation(const StructureParams& params, int max_nodes, int m
   sides_.reserve(max_sides_);
   first_side_.reserve(max_nodes + 1);
   side_to_.reserve(max_nodes);
+  near_a_.reserve(max_nodes);
+  near_b_.reserve(max_nodes);
   face_sides_.reserve(max_faces_);
 }
 
@@ -42,6 +44,8 @@ void Triangulation::build(const CloudView& cloud, Topology& topology) {
   num_dropped_ = 0;
   joined_.reset(topology.num_nodes(), topology.edges);
   if (complete_) {
+    near_a_.assign(topology.num_nodes(), -1);
+    near_b_.assign(topology.num_nodes(), -1);
     complete_pentagons(topology);
     complete_quadrilaterals(topology);
   }
@@ -50,17 +54,21 @@ void Triangulation::build(const CloudView& cloud, Topology& topology) {
 }
 
 // Chordless cycles a-b-c-d-e over c. Each is met once: a is its smallest node and b < e. The order
-// is ascending (a, b, e, c, d); each cycle sees the supplementary edges made before it.
+// is ascending (a, b, c, d, e); each cycle sees the supplementary edges made before it. Marks rule
+// out most cycles that have an edge as chord before the full test.
 void Triangulation::complete_pentagons(const Topology& topology) {
   for (int a = 0; a < joined_.num_nodes(); ++a) {
+    for (const int other : joined_.neighbors(a)) near_a_[other] = a;
     for (const int b : joined_.neighbors(a)) {
       if (b < a) continue;
-      for (const int e : joined_.neighbors(a)) {
-        if (e <= b || joined_.is_joined(b, e)) continue;
-        for (const int c : joined_.neighbors(b)) {
-          if (c <= a || joined_.is_joined(a, c) || joined_.is_joined(e, c)) continue;
-          for (const int d : joined_.neighbors(e)) {
-            if (d > a && joined_.is_edge(c, d)) complete_pentagon(topology, {a, b, c, d, e});
+      for (const int other : joined_.neighbors(b)) near_b_[other] = b;
+      for (const int c : joined_.neighbors(b)) {
+        if (c <= a || near_a_[c] == a) continue;
+        for (const int d : joined_.neighbors(c)) {
+          if (d <= a || d == b || near_a_[d] == a || near_b_[d] == b) continue;
+          for (const int e : joined_.neighbors(d)) {
+            if (e <= b || near_a_[e] != a || near_b_[e] == b) continue;
+            complete_pentagon(topology, {a, b, c, d, e});
           }
         }
       }
@@ -106,22 +114,22 @@ bool Triangulation::is_surrounded(const std::array<int, 5>& cycle) const {
   return found;
 }
 
-// Chordless cycles a-b-d-c over c, a the smallest node and b < c, in ascending (a, b, c, d): the
-// shorter diagonal is added, a-d when both are equal.
+// Chordless cycles a-b-c-d over c, a the smallest node and b < d, in ascending (a, b, c, d): the
+// shorter diagonal is added, a-c when both are equal.
 void Triangulation::complete_quadrilaterals(const Topology& topology) {
   for (int a = 0; a < joined_.num_nodes(); ++a) {
+    for (const int other : joined_.neighbors(a)) near_a_[other] = a;
     for (const int b : joined_.neighbors(a)) {
       if (b < a) continue;
-      for (const int c : joined_.neighbors(a)) {
-        if (c <= b) continue;
-        for (const int d : joined_.neighbors(b)) {
-          if (d <= a || !joined_.is_edge(d, c)) continue;
-          if (joined_.is_joined(b, c)) break;
-          if (joined_.is_joined(a, d)) continue;
-          if (distance_m(topology, a, d) <= distance_m(topology, b, c)) {
-            join(a, d);
+      for (const int c : joined_.neighbors(b)) {
+        if (c <= a || near_a_[c] == a) continue;
+        for (const int d : joined_.neighbors(c)) {
+          if (d <= b || near_a_[d] != a) continue;
+          if (joined_.is_joined(a, c) || joined_.is_joined(b, d)) continue;
+          if (distance_m(topology, a, c) <= distance_m(topology, b, d)) {
+            join(a, c);
           } else {
-            join(b, c);
+            join(b, d);
           }
         }
       }

@@ -44,10 +44,11 @@ class Triangulation {
   bool complete_;
   int max_faces_;
   int max_sides_;
-  Neighborhood joined_;          ///< c and c'
-  std::vector<Edge> sides_;      ///< c and c' together, ascending (a, b)
-  std::vector<int> first_side_;  ///< of node a: the index of its first side in sides_
-  std::vector<int> side_to_;     ///< side from the current node to this node, -1 = none
+  Neighborhood joined_;               ///< c and c'
+  std::vector<int> near_a_, near_b_;  ///< the last node a (b) of a cycle that has an edge to here
+  std::vector<Edge> sides_;           ///< c and c' together, ascending (a, b)
+  std::vector<int> first_side_;       ///< of node a: the index of its first side in sides_
+  std::vector<int> side_to_;          ///< side from the current node to this node, -1 = none
   std::vector<std::array<int, 3>> face_sides_;
   int num_dropped_ = 0;
 };

@@ -60,36 +60,36 @@ void complete_pentagon(Graph& graph, const std::array<int, 5>& v) {
   graph.add(v[apex], v[(apex + 3) % 5]);
 }
 
-// Each cycle a-b-c-d-e once: a smallest, b < e; in ascending (a, b, e, c, d).
+// Each cycle a-b-c-d-e once: a smallest, b < e; in ascending (a, b, c, d, e).
 void complete_pentagons(Graph& graph) {
   const int r = graph.size();
   for (int a = 0; a < r; ++a)
     for (int b = a + 1; b < r; ++b)
-      for (int e = b + 1; e < r; ++e) {
-        if (!graph.c[a][b] || !graph.c[a][e]) continue;
-        for (int c = a + 1; c < r; ++c)
-          for (int d = a + 1; d < r; ++d) {
-            if (c == b || c == e || d == b || d == e || c == d) continue;
-            if (!graph.c[b][c] || !graph.c[c][d] || !graph.c[d][e]) continue;
+      for (int c = a + 1; c < r; ++c)
+        for (int d = a + 1; d < r; ++d) {
+          if (c == b || d == b || d == c) continue;
+          if (!graph.c[a][b] || !graph.c[b][c] || !graph.c[c][d]) continue;
+          for (int e = b + 1; e < r; ++e) {
+            if (e == c || e == d || !graph.c[d][e] || !graph.c[e][a]) continue;
             complete_pentagon(graph, {a, b, c, d, e});
           }
-      }
+        }
 }
 
-// Each cycle a-b-d-c once: a smallest, b < c; in ascending (a, b, c, d).
+// Each cycle a-b-c-d once: a smallest, b < d; in ascending (a, b, c, d).
 void complete_quadrilaterals(Graph& graph) {
   const int r = graph.size();
   for (int a = 0; a < r; ++a)
     for (int b = a + 1; b < r; ++b)
-      for (int c = b + 1; c < r; ++c)
-        for (int d = a + 1; d < r; ++d) {
-          if (d == b || d == c) continue;
-          if (!graph.c[a][b] || !graph.c[a][c] || !graph.c[b][d] || !graph.c[c][d]) continue;
-          if (graph.joined[b][c] || graph.joined[a][d]) continue;
-          if (graph.length(a, d) <= graph.length(b, c)) {
-            graph.add(a, d);
+      for (int c = a + 1; c < r; ++c)
+        for (int d = b + 1; d < r; ++d) {
+          if (c == b || d == c) continue;
+          if (!graph.c[a][b] || !graph.c[b][c] || !graph.c[c][d] || !graph.c[d][a]) continue;
+          if (graph.joined[a][c] || graph.joined[b][d]) continue;
+          if (graph.length(a, c) <= graph.length(b, d)) {
+            graph.add(a, c);
           } else {
-            graph.add(b, c);
+            graph.add(b, d);
           }
         }
 }
