@@ -3,41 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <Eigen/Eigenvalues>
+#include <cstdint>
 
 #include "base/rng.h"
 #include "ddgng/classification.h"
 #include "ddgng/heads.h"
 
 namespace ddgng {
-
-/// Sums of points for a total-least-squares plane.
-class PlaneFinder::Sums {
- public:
-  void add(const Eigen::Vector3d& p) {
-    if (size_ == 0) origin_m_ = p;
-    const Eigen::Vector3d offset_m = p - origin_m_;
-    sum_m_ += offset_m;
-    outer_m2_ += offset_m * offset_m.transpose();
-    ++size_;
-  }
-  int size() const { return size_; }
-  Fit plane() const {
-    const double weight = 1.0 / size_;
-    const Eigen::Vector3d mean_m = sum_m_ * weight;
-    const Eigen::Matrix3d covariance_m2 = outer_m2_ * weight - mean_m * mean_m.transpose();
-    // compute(), not computeDirect(): only square roots, so the same bits everywhere.
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance_m2);
-    return {solver.eigenvectors().col(0), origin_m_ + mean_m};
-  }
-
- private:
-  int size_ = 0;
-  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d sum_m_ = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d outer_m2_ = Eigen::Matrix3d::Zero();
-};
 
 PlaneFinder::PlaneFinder(const StructureParams& params, int max_nodes, int max_faces)
     : params_(params), duplicate_cosine_(cosine_of_degrees(params.duplicate_angle_deg)) {
@@ -56,19 +28,20 @@ void PlaneFinder::build(const CloudView& cloud, Topology& topology) {
   sample_points(cloud);
   if (params_.floor_height_known) {
     const Eigen::Vector3d below_m(heads_m_.x(), heads_m_.y(), params_.floor_height_m);
-    add_if_sound({Eigen::Vector3d::UnitZ(), below_m}, below_m, topology);
+    add_if_sound(PlaneFit::level(below_m), below_m, topology);
   }
   order_large_labels(topology);
   counted_for_.assign(topology.num_nodes(), -1);
   for (const int label : large_labels_) {
-    const Fit fit = fit_to_nodes(label, topology);
+    const PlaneFit fit = fit_to_nodes(label, topology);
     add_if_sound(refit_to_sample(fit), fit.mean_m, topology);
   }
   assign_nodes(topology);
 }
 
 void PlaneFinder::sample_points(const CloudView& cloud) {
-  base::Rng rng(params_.seed, cloud.sequence);
+  constexpr std::uint64_t kStream = 0x706C616E6573;  // "planes": not the numbers of the sampler
+  base::Rng rng(params_.seed ^ kStream, cloud.sequence);
   sample_m_.clear();
   for (int i = 0; i < params_.plane_sample_points; ++i) {
     const std::uint32_t point = rng.below(static_cast<std::uint32_t>(cloud.size()));
@@ -88,8 +61,8 @@ void PlaneFinder::order_large_labels(const Topology& topology) {
   });
 }
 
-PlaneFinder::Fit PlaneFinder::fit_to_nodes(int label, const Topology& topology) {
-  Sums sums;
+PlaneFit PlaneFinder::fit_to_nodes(int label, const Topology& topology) {
+  PlaneSums sums;
   for (const Face& face : topology.faces) {
     if (face.label != label) continue;
     for (const int node : face.nodes) {
@@ -101,10 +74,10 @@ PlaneFinder::Fit PlaneFinder::fit_to_nodes(int label, const Topology& topology) 
   return sums.plane();
 }
 
-PlaneFinder::Fit PlaneFinder::refit_to_sample(Fit fit) const {
+PlaneFit PlaneFinder::refit_to_sample(PlaneFit fit) const {
   constexpr int kRounds = 2;
   for (int round = 0; round < kRounds; ++round) {
-    Sums sums;
+    PlaneSums sums;
     for (const Eigen::Vector3d& p : sample_m_) {
       if (std::abs(fit.distance_m(p)) < params_.plane_refit_distance_m) sums.add(p);
     }
@@ -114,7 +87,8 @@ PlaneFinder::Fit PlaneFinder::refit_to_sample(Fit fit) const {
   return fit;
 }
 
-void PlaneFinder::add_if_sound(Fit fit, const Eigen::Vector3d& center_m, Topology& topology) const {
+void PlaneFinder::add_if_sound(PlaneFit fit, const Eigen::Vector3d& center_m,
+                               Topology& topology) const {
   if (static_cast<int>(topology.planes.size()) >= params_.max_planes) return;
   if (fit.distance_m(heads_m_) < 0.0) fit.normal = -fit.normal;
   if (is_duplicate(fit, center_m, topology) || !is_supported_and_opaque(fit)) return;
@@ -126,7 +100,7 @@ void PlaneFinder::add_if_sound(Fit fit, const Eigen::Vector3d& center_m, Topolog
 }
 
 // center_m: where the label lies; two planes are compared there.
-bool PlaneFinder::is_duplicate(const Fit& fit, const Eigen::Vector3d& center_m,
+bool PlaneFinder::is_duplicate(const PlaneFit& fit, const Eigen::Vector3d& center_m,
                                const Topology& topology) const {
   for (const Plane& plane : topology.planes) {
     const Eigen::Vector3d normal = plane.normal.cast<double>();
@@ -140,7 +114,7 @@ bool PlaneFinder::is_duplicate(const Fit& fit, const Eigen::Vector3d& center_m,
 
 // A plane carries its share of the points, and few points lie behind it: the heads do not see
 // through it. The front of a ladder fails.
-bool PlaneFinder::is_supported_and_opaque(const Fit& fit) const {
+bool PlaneFinder::is_supported_and_opaque(const PlaneFit& fit) const {
   float num_on = 0.0F;
   float num_behind = 0.0F;
   for (const Eigen::Vector3d& p : sample_m_) {

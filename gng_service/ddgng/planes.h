@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "ddgng/cloud.h"
+#include "ddgng/plane_fit.h"
 #include "ddgng/structure_params.h"
 #include "ddgng/topology.h"
 
@@ -23,21 +24,14 @@ class PlaneFinder {
   void build(const CloudView& cloud, Topology& topology);
 
  private:
-  struct Fit {
-    Eigen::Vector3d normal;
-    Eigen::Vector3d mean_m;
-    double distance_m(const Eigen::Vector3d& p) const { return normal.dot(p - mean_m); }
-  };
-  class Sums;
-
   void sample_points(const CloudView& cloud);
   void order_large_labels(const Topology& topology);
-  Fit fit_to_nodes(int label_index, const Topology& topology);
-  Fit refit_to_sample(Fit fit) const;
-  bool is_duplicate(const Fit& fit, const Eigen::Vector3d& center_m,
+  PlaneFit fit_to_nodes(int label_index, const Topology& topology);
+  PlaneFit refit_to_sample(PlaneFit fit) const;
+  bool is_duplicate(const PlaneFit& fit, const Eigen::Vector3d& center_m,
                     const Topology& topology) const;
-  bool is_supported_and_opaque(const Fit& fit) const;
-  void add_if_sound(Fit fit, const Eigen::Vector3d& center_m, Topology& topology) const;
+  bool is_supported_and_opaque(const PlaneFit& fit) const;
+  void add_if_sound(PlaneFit fit, const Eigen::Vector3d& center_m, Topology& topology) const;
   void assign_nodes(Topology& topology) const;
 
   StructureParams params_;

@@ -70,6 +70,12 @@ std::string check(const StructureParams& p) {
       Relation{p.workspace_above_floor_m >= 0, "workspace_above_floor_m >= 0"},
       Relation{p.attention_plane_distance_m >= 0, "attention_plane_distance_m >= 0"},
       Relation{p.attention_plane_per_range >= 0, "attention_plane_per_range >= 0"},
+      Relation{!p.residual_patches || p.attention == AttentionMode::kOffPlanes,
+               "residual_patches need attention off planes"},
+      Relation{p.patch_interval_frames > 0, "patch_interval_frames > 0"},
+      Relation{p.patch_cell_m > 0, "patch_cell_m > 0"},
+      Relation{p.patch_min_interior_m2 >= 0, "patch_min_interior_m2 >= 0"},
+      Relation{p.patch_min_interior_share >= 0, "patch_min_interior_share >= 0"},
   };
   for (const Relation& relation : relations) {
     if (!relation.holds) return relation.text;

@@ -69,6 +69,13 @@ struct StructureParams {
   float workspace_above_floor_m = 0.06F;     ///< [m] above the floor, where a floor is known
   float attention_plane_distance_m = 0.03F;  ///< [m] points nearer to a plane are left out
   float attention_plane_per_range = 0.025F;  ///< [m per m range] added to it
+
+  // --- residual patches: bounded planes among the attention points, against lock-in (measured) ---
+  bool residual_patches = false;  ///< a surface once missed as a plane holds the attention for good
+  int patch_interval_frames = 3;  ///< [frames] between searches, > 0
+  float patch_cell_m = 0.04F;     ///< [m] side of the cells that a patch is made of
+  float patch_min_interior_m2 = 0.03F;    ///< [m2] of cells with four occupied neighbours
+  float patch_min_interior_share = 0.4F;  ///< [share of the occupied cells]: not so on a ladder
 };
 
 /// The paper's literal form: boxes, classes by labels, moving space and width limit of its program.

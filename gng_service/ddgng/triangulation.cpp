@@ -32,6 +32,7 @@ Triangulation::Triangulation(const StructureParams& params, int max_nodes, int m
           std::int64_t{params.max_faces_per_node} * max_nodes, kMaxFacesInMessage))),
       max_sides_(2 * max_edges),
       joined_(max_nodes, max_edges) {
+  added_sides_.reserve(max_edges);
   sides_.reserve(max_sides_);
   first_side_.reserve(max_nodes + 1);
   side_to_.reserve(max_nodes);
@@ -143,9 +144,11 @@ void Triangulation::join(int a, int b) {
 
 void Triangulation::collect_sides(const Topology& topology) {
   const auto supplementary = joined_.supplementary();
-  sides_.assign(topology.edges.begin(), topology.edges.end());
-  sides_.insert(sides_.end(), supplementary.begin(), supplementary.end());
-  std::sort(sides_.begin(), sides_.end(), is_before);
+  added_sides_.assign(supplementary.begin(), supplementary.end());
+  std::sort(added_sides_.begin(), added_sides_.end(), is_before);
+  sides_.resize(topology.edges.size() + added_sides_.size());
+  std::merge(topology.edges.begin(), topology.edges.end(), added_sides_.begin(), added_sides_.end(),
+             sides_.begin(), is_before);
 
   first_side_.assign(topology.num_nodes() + 1, 0);
   for (const Edge& side : sides_) ++first_side_[side.a + 1];

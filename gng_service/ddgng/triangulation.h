@@ -46,6 +46,7 @@ class Triangulation {
   int max_sides_;
   Neighborhood joined_;               ///< c and c'
   std::vector<int> near_a_, near_b_;  ///< the last node a (b) of a cycle that has an edge to here
+  std::vector<Edge> added_sides_;     ///< c', ascending (a, b)
   std::vector<Edge> sides_;           ///< c and c' together, ascending (a, b)
   std::vector<int> first_side_;       ///< of node a: the index of its first side in sides_
   std::vector<int> side_to_;          ///< side from the current node to this node, -1 = none
