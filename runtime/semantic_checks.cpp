@@ -119,12 +119,12 @@ bool are_moments(const ladder_msgs::topology_t& m) {
                          m.moment_yz_m2, m.moment_zz_m2);
 }
 
+/// Ascending nodes: the first is at least 0 and the last exists, so all do.
 bool are_edges_and_faces(const ladder_msgs::topology_t& m) {
-  return are_indices(m.edge_a, m.num_nodes) && are_indices(m.edge_b, m.num_nodes) &&
-         each_less(m.edge_a, m.edge_b) && are_indices(m.face_a, m.num_nodes) &&
-         are_indices(m.face_b, m.num_nodes) && are_indices(m.face_c, m.num_nodes) &&
+  return all_at_least(m.edge_a, 0) && each_less(m.edge_a, m.edge_b) &&
+         are_indices(m.edge_b, m.num_nodes) && all_at_least(m.face_a, 0) &&
          each_less(m.face_a, m.face_b) && each_less(m.face_b, m.face_c) &&
-         are_indices(m.face_label, m.num_labels);
+         are_indices(m.face_c, m.num_nodes) && are_indices(m.face_label, m.num_labels);
 }
 
 /// The normal of a label is a mean of unit vectors: it may be shorter than 1.

@@ -11,6 +11,7 @@
 #include "runtime/printable_text.h"
 #include "runtime/wire_guard.h"
 #include "tests/lcmtypes/sample_messages.h"
+#include "tests/lcmtypes/wire_edit.h"
 
 namespace lcmtypes {
 namespace {
@@ -49,6 +50,41 @@ TEST(SemanticChecks, Stamps) {
   for_each_message_type([]<class Msg>(std::type_identity<Msg>) { expect_stamp_rules<Msg>(); });
 }
 
+/// The bytes of +infinity, quiet NaN and -infinity as the wire has them: big-endian.
+std::vector<std::vector<std::uint8_t>> not_finite(runtime::WireKind kind) {
+  if (kind == runtime::WireKind::kFloat) {
+    return {{0x7f, 0x80, 0, 0}, {0x7f, 0xc0, 0, 0}, {0xff, 0x80, 0, 0}};
+  }
+  return {{0x7f, 0xf0, 0, 0, 0, 0, 0, 0},
+          {0x7f, 0xf8, 0, 0, 0, 0, 0, 0},
+          {0xff, 0xf0, 0, 0, 0, 0, 0, 0}};
+}
+
+template <class Msg>
+void expect_only_finite_values() {
+  const auto& type = runtime::kWireTypeOf<Msg>;
+  const auto bytes = encode(sample<Msg>(3, 11));
+  for (const Place& place : places(bytes, type)) {
+    const runtime::WireKind kind = place.field->kind;
+    if (kind != runtime::WireKind::kFloat && kind != runtime::WireKind::kDouble) continue;
+    ASSERT_GT(place.elements, 0) << "the sample leaves " << place.field->name << " untested";
+    for (const auto& value : not_finite(kind)) {
+      auto damaged = bytes;
+      const std::size_t last = static_cast<std::size_t>(place.elements - 1) * value.size();
+      std::copy(value.begin(), value.end(), damaged.begin() + place.offset + last);
+      Msg received{};
+      EXPECT_EQ(runtime::decode_guarded(damaged, received), Reject::kValue)
+          << type.name << "." << place.field->name;
+    }
+  }
+}
+
+// No field of no type may be infinite or NaN.
+TEST(SemanticChecks, EveryNumberIsFinite) {
+  for_each_message_type(
+      []<class Msg>(std::type_identity<Msg>) { expect_only_finite_values<Msg>(); });
+}
+
 // A frame names its head, its camera and its ranges; its image has the size it says.
 TEST(SemanticChecks, TofFrame) {
   EXPECT_REFUSED(tof_frame_t, m.head = 4);
@@ -58,6 +94,8 @@ TEST(SemanticChecks, TofFrame) {
   EXPECT_REFUSED(tof_frame_t, m.width_px += 1);
   EXPECT_REFUSED(tof_frame_t, (m.width_px = -m.width_px, m.height_px = -m.height_px));
   EXPECT_REFUSED(tof_frame_t, (m.width_px = 0, m.num_pixels = 0, m.depth_mm.clear(),
+                               m.num_confidence = 0, m.confidence.clear()));
+  EXPECT_REFUSED(tof_frame_t, (m.height_px = 0, m.num_pixels = 0, m.depth_mm.clear(),
                                m.num_confidence = 0, m.confidence.clear()));
   EXPECT_REFUSED(tof_frame_t, (m.num_confidence = 1, m.confidence.assign(1, 0)));
   EXPECT_ACCEPTED(tof_frame_t, (m.num_confidence = 0, m.confidence.clear()));
@@ -124,7 +162,7 @@ TEST(SemanticChecks, TopologyNodesAndMoments) {
   EXPECT_ACCEPTED(topology_t, m.node_plane[0] = -1);
   EXPECT_REFUSED(topology_t, m.moment_node.back() = m.num_nodes);
   EXPECT_REFUSED(topology_t, m.moment_node[0] = -1);
-  EXPECT_REFUSED(topology_t, m.moment_head[0] = 4);
+  EXPECT_REFUSED(topology_t, m.moment_head.back() = 4);
   EXPECT_REFUSED(topology_t, std::swap(m.moment_node.front(), m.moment_node.back()));
   EXPECT_REFUSED(topology_t,
                  (m.moment_node[1] = m.moment_node[0], m.moment_head[1] = m.moment_head[0]));
@@ -143,6 +181,7 @@ TEST(SemanticChecks, TopologyEdgesFacesAndSegments) {
   EXPECT_REFUSED(topology_t, m.edge_b[0] = m.num_nodes);
   EXPECT_REFUSED(topology_t, m.edge_a[0] = -1);
   EXPECT_REFUSED(topology_t, m.face_c[0] = m.num_nodes);
+  EXPECT_REFUSED(topology_t, m.face_a[0] = -1);
   EXPECT_REFUSED(topology_t, m.face_b[0] = m.face_c[0]);
   EXPECT_REFUSED(topology_t, m.face_a[0] = m.face_b[0] + 1);
   EXPECT_REFUSED(topology_t, m.face_label[0] = m.num_labels);
@@ -162,10 +201,16 @@ TEST(SemanticChecks, TopologyEdgesFacesAndSegments) {
 // Rungs: known states and flags, finite axes; spacing only with a confirmed ladder.
 TEST(SemanticChecks, LadderRungs) {
   EXPECT_REFUSED(ladder_t, m.ladder_state = 3);
+  EXPECT_REFUSED(ladder_t, (m.ladder_state = 3, m.spacing_m = 0.0F));
+  EXPECT_REFUSED(ladder_t, (m.ladder_state = m.LADDER_NONE, m.spacing_m = -0.3F));
   EXPECT_REFUSED(ladder_t, m.ladder_state = m.LADDER_NONE);
   EXPECT_REFUSED(ladder_t, m.spacing_m = 0.0F);
   EXPECT_REFUSED(ladder_t, m.spacing_sigma_m = kNan);
   EXPECT_REFUSED(ladder_t, m.topology_seq = -1);
+  EXPECT_REFUSED(ladder_t, m.rung_id[0] = -1);
+  EXPECT_REFUSED(ladder_t, m.rung_inliers[0] = -1);
+  EXPECT_REFUSED(ladder_t, m.rung_outliers[0] = -1);
+  EXPECT_REFUSED(ladder_t, m.rung_sag_m[0] = -0.01F);
   EXPECT_REFUSED(ladder_t, m.rung_state[0] = 3);
   EXPECT_REFUSED(ladder_t, m.rung_age[0] = -1);
   EXPECT_REFUSED(ladder_t, m.rung_confidence[0] = 1.01F);
@@ -208,6 +253,12 @@ TEST(SemanticChecks, Health) {
   EXPECT_REFUSED(health_t, m.head_state[1] = -1);
   EXPECT_REFUSED(health_t, m.input_channel[0] = m.CHANNEL_UNKNOWN);
   EXPECT_REFUSED(health_t, m.input_channel[0] = 17);
+  EXPECT_REFUSED(health_t, m.input_received[0] = -1);
+  EXPECT_REFUSED(health_t, m.input_overwritten[0] = -1);
+  EXPECT_REFUSED(health_t, m.input_rejected[0] = -1);
+  EXPECT_REFUSED(health_t, m.input_age_p50_us[0] = -2);
+  EXPECT_REFUSED(health_t, m.stage_p50_us[0] = -2);
+  EXPECT_REFUSED(health_t, m.stage_p95_us[0] = -2);
   EXPECT_REFUSED(health_t, m.input_lost[0] = -1);
   EXPECT_REFUSED(health_t, m.input_age_p99_us[0] = -2);
   EXPECT_ACCEPTED(health_t, m.input_age_p99_us[0] = -1);
@@ -219,6 +270,9 @@ TEST(SemanticChecks, Health) {
 TEST(SemanticChecks, Truth) {
   EXPECT_REFUSED(truth_t, m.is_ladder = 2);
   EXPECT_REFUSED(truth_t, m.rung_id[1] = m.rung_id[0]);
+  EXPECT_REFUSED(truth_t, m.rung_id[0] = -1);
+  EXPECT_REFUSED(truth_t, m.rung_hits[0] = -1);
+  EXPECT_REFUSED(truth_t, m.rung_radius_m[0] = -0.01F);
   EXPECT_REFUSED(truth_t, m.rung_kind[0] = 5);
   EXPECT_REFUSED(truth_t, m.rung_visible[0] = 1.5F);
   EXPECT_REFUSED(truth_t, m.rung_x0_m[0] = kNan);
