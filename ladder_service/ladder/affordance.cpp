@@ -17,7 +17,7 @@ double length_m(const Rung& rung) {
 
 Affordance::Affordance(const LadderParams& params) : params_(params.affordance) {
   samples_.reserve(static_cast<std::size_t>(params_.max_length_m / params_.step_m) + 2);
-  blocked_.reserve(2 + params.max_bars + params.max_tracks);
+  blocked_.reserve(4 + params.max_bars + 2 * static_cast<std::size_t>(params.max_tracks));
 }
 
 void Affordance::find(std::span<const RungSurface> surfaces, std::span<const RailLine> rails,

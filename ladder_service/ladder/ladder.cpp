@@ -1,29 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ladder/ladder.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "base/check.h"
 #include "ladder/affordance.h"
 #include "ladder/default_mode.h"
+#include "ladder/paper_mode.h"
 
 namespace ladder {
 
 struct LadderTracker::Modes {
-  explicit Modes(const LadderParams& params)
-      : mode(params.mode), default_mode(params), affordance(params) {
+  explicit Modes(const LadderParams& params) : affordance(params) {
+    if (params.mode == Mode::kPaper) {
+      paper_mode.emplace(params);
+    } else {
+      default_mode.emplace(params);
+    }
     estimate.rungs.reserve(params.max_tracks);
-    estimate.rails.reserve(2 + params.max_bars);
+    const int max_rails = std::max(2 + params.max_bars, params.max_tracks);
+    estimate.rails.reserve(max_rails);
     estimate.grasps.reserve(params.max_tracks);
     const AffordanceParams& p = params.affordance;
     const auto num_samples = static_cast<std::size_t>(p.max_length_m / p.step_m) + 2;
     estimate.intervals.reserve(num_samples * params.max_tracks);
     surfaces.reserve(params.max_tracks);
-    rails.reserve(2 + params.max_bars);
+    rails.reserve(max_rails);
   }
 
-  Mode mode;
-  DefaultMode default_mode;
+  std::optional<DefaultMode> default_mode;  ///< one of the two
+  std::optional<PaperMode> paper_mode;
   Affordance affordance;
   NodeCloud nothing;
   std::vector<RungSurface> surfaces;
@@ -42,7 +49,8 @@ LadderTracker::LadderTracker(LadderTracker&&) noexcept = default;
 LadderTracker& LadderTracker::operator=(LadderTracker&&) noexcept = default;
 
 void LadderTracker::reset() {
-  modes_->default_mode.reset();
+  if (modes_->default_mode) modes_->default_mode->reset();
+  if (modes_->paper_mode) modes_->paper_mode->reset();
   modes_->last_sequence.reset();
   modes_->estimate.state = LadderState::kUnknown;
   modes_->estimate.sequence = 0;
@@ -59,7 +67,8 @@ const LadderEstimate& LadderTracker::update(const NodeCloud& cloud) {
   m.last_sequence = cloud.sequence;
   m.estimate.sequence = cloud.sequence;
   const NodeCloud& usable = is_consistent(cloud) ? cloud : m.nothing;
-  m.default_mode.update(usable, m.estimate, m.surfaces, m.rails);
+  if (m.default_mode) m.default_mode->update(usable, m.estimate, m.surfaces, m.rails);
+  if (m.paper_mode) m.paper_mode->update(usable, m.estimate, m.surfaces, m.rails);
   m.affordance.find(m.surfaces, m.rails, cloud.body_position_m.cast<double>(), m.estimate);
   return m.estimate;
 }

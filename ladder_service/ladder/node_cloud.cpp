@@ -2,6 +2,7 @@
 #include "ladder/node_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ladder {
 
@@ -24,6 +25,10 @@ bool is_consistent(const NodeCloud& cloud) {
   const std::size_t n = cloud.id.size();
   if (cloud.x_m.size() != n || cloud.y_m.size() != n || cloud.z_m.size() != n) return false;
   if (cloud.node_class.size() != n || cloud.plane.size() != n) return false;
+  if (!cloud.body_position_m.allFinite() || !std::isfinite(cloud.pixel_pitch_rad)) return false;
+  for (int i = 0; i < kNumHeads; ++i) {
+    if (cloud.head_valid[i] && !cloud.head_position_m[i].allFinite()) return false;
+  }
   const auto in_cloud = [&](int node) { return node >= 0 && node < static_cast<int>(n); };
   const auto not_ascending = [](int a, int b) { return a >= b; };
   if (std::adjacent_find(cloud.id.begin(), cloud.id.end(), not_ascending) != cloud.id.end()) {

@@ -71,8 +71,8 @@ struct NodeCloud {
   void clear();
 };
 
-/// Whether the vectors' lengths, order and indices keep what is written above. Single values may
-/// still be infinite or NaN: such nodes and moments are passed over.
+/// Whether the vectors' lengths, order and indices keep what is written above and the robot's own
+/// numbers are finite. Single nodes and moments may still be infinite or NaN: they are passed over.
 bool is_consistent(const NodeCloud& cloud);
 
 }  // namespace ladder

@@ -122,7 +122,7 @@ void LadderScene::add_board(const Vector3d& end0_m, const Vector3d& end1_m, doub
 }
 
 void LadderScene::add_shelf_board(const Vector3d& end0_m, const Vector3d& end1_m, double depth_m) {
-  const Vector3d away = Vector3d::UnitZ().cross(end0_m - end1_m).normalized();
+  const Vector3d away = (end0_m - end1_m).cross(Vector3d::UnitZ()).normalized();
   const Vector3d half = 0.5 * depth_m * away;
   surfaces_.push_back({end0_m + half, end1_m + half, away, depth_m, false, -1});
 }
