@@ -57,33 +57,72 @@ std::vector<Point> draw_points(const std::vector<Surface>& surfaces, const Ladde
   return points;
 }
 
-/// Nodes at some of the points, none nearer to each other than the spacing.
+using Cell = std::array<int, 3>;
+
+Cell cell_of(const Vector3d& p, double size_m) {
+  return {static_cast<int>(std::floor(p.x() / size_m)),
+          static_cast<int>(std::floor(p.y() / size_m)),
+          static_cast<int>(std::floor(p.z() / size_m))};
+}
+
+/// Nodes at some of the points, none nearer to each other than the spacing (on planes five times
+/// it); in order of height.
 std::vector<Point> draw_nodes(const std::vector<Point>& points, double spacing_m) {
   std::vector<Point> nodes;
+  std::array<std::map<Cell, std::vector<Vector3d>>, 2> taken;  // off planes, on planes
   for (const Point& point : points) {
+    auto& cells = taken[point.plane < 0 ? 0 : 1];
     const double apart_m = point.plane < 0 ? spacing_m : 5.0 * spacing_m;
-    const bool crowded = std::any_of(nodes.begin(), nodes.end(), [&](const Point& node) {
-      return (node.position_m - point.position_m).squaredNorm() < apart_m * apart_m;
-    });
-    if (!crowded) nodes.push_back(point);
+    const Cell center = cell_of(point.position_m, apart_m);
+    bool is_crowded = false;
+    for (int i = 0; i < 27 && !is_crowded; ++i) {
+      const Cell cell = {center[0] + i % 3 - 1, center[1] + i / 3 % 3 - 1, center[2] + i / 9 - 1};
+      const auto found = cells.find(cell);
+      if (found == cells.end()) continue;
+      is_crowded = std::any_of(found->second.begin(), found->second.end(), [&](const Vector3d& p) {
+        return (p - point.position_m).squaredNorm() < apart_m * apart_m;
+      });
+    }
+    if (is_crowded) continue;
+    cells[center].push_back(point.position_m);
+    nodes.push_back(point);
   }
+  std::sort(nodes.begin(), nodes.end(),
+            [](const Point& a, const Point& b) { return a.position_m.z() < b.position_m.z(); });
   return nodes;
 }
 
+/// The two nodes nearest to p, second = -1 when there is one only. Nodes in order of height: looks
+/// up and down until the height alone is too far.
 std::pair<int, int> nearest_two(const std::vector<Point>& nodes, const Vector3d& p) {
+  constexpr double kFar = std::numeric_limits<double>::max();
   int first = -1, second = -1;
-  double first_m2 = std::numeric_limits<double>::max(), second_m2 = first_m2;
-  for (int i = 0; i < static_cast<int>(nodes.size()); ++i) {
+  double first_m2 = kFar, second_m2 = kFar;
+  const auto look = [&](int i) {
     const double d_m2 = (nodes[i].position_m - p).squaredNorm();
     if (d_m2 < first_m2) {
-      second = first;
-      second_m2 = first_m2;
-      first = i;
-      first_m2 = d_m2;
+      second = std::exchange(first, i);
+      second_m2 = std::exchange(first_m2, d_m2);
     } else if (d_m2 < second_m2) {
       second = i;
       second_m2 = d_m2;
     }
+  };
+  const auto in_reach = [&](int i) {
+    const double dz_m = nodes[i].position_m.z() - p.z();
+    return dz_m * dz_m < second_m2;
+  };
+  const auto above =
+      std::lower_bound(nodes.begin(), nodes.end(), p.z(),
+                       [](const Point& node, double z_m) { return node.position_m.z() < z_m; });
+  int up = static_cast<int>(above - nodes.begin());
+  int down = up - 1;
+  const int num_nodes = static_cast<int>(nodes.size());
+  bool goes_on = true;
+  while (goes_on) {
+    goes_on = false;
+    if (up < num_nodes && in_reach(up)) goes_on = (look(up++), true);
+    if (down >= 0 && in_reach(down)) goes_on = (look(down--), true);
   }
   return {first, second};
 }

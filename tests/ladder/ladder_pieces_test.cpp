@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The small parts of the ladder search against other ways to get the same.
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "base/rng.h"
+#include "ladder/axis.h"
+#include "ladder/bar_nodes.h"
+#include "ladder/chord_depth.h"
+#include "ladder/ladder_confirmation.h"
+#include "ladder/measured_bar.h"
+#include "ladder/moment_sum.h"
+#include "ladder/principal_axis.h"
+
+namespace {
+
+// Axis and variances agree with a general eigenvalue solver on random covariances.
+TEST(PrincipalAxis, AgreesWithAGeneralSolver) {
+  base::Rng rng(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    Eigen::Matrix3d a;
+    for (int i = 0; i < 9; ++i) a(i / 3, i % 3) = rng.gaussian();
+    const double flatness = std::pow(10.0, -3.0 * rng.uniform());
+    a.col(0) *= flatness;
+    const Eigen::Matrix3d covariance = 1e-3 * a * a.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+    const ladder::PrincipalAxis axis = ladder::principal_axis(covariance);
+    const double ratio = solver.eigenvalues()(2) / solver.eigenvalues()(1);
+    if (ratio < 1.2) continue;
+    EXPECT_NEAR(std::abs(axis.direction.dot(solver.eigenvectors().col(2))), 1.0, 1e-6);
+    EXPECT_NEAR(axis.first_m2, solver.eigenvalues()(2), 1e-6 * solver.eigenvalues()(2));
+    EXPECT_NEAR(axis.second_m2, solver.eigenvalues()(1), 1e-3 * solver.eigenvalues()(1));
+  }
+}
+
+// A zero matrix, a point mass, gives a finite axis that is not linear.
+TEST(PrincipalAxis, PointHasNoDirection) {
+  const ladder::PrincipalAxis axis = ladder::principal_axis(Eigen::Matrix3d::Zero());
+  EXPECT_TRUE(axis.direction.allFinite());
+  EXPECT_FALSE(axis.is_linear(1.0));
+}
+
+// The mean depth of a circle's front is the area under it divided by its width.
+TEST(ChordDepth, MatchesTheCircularSegment) {
+  for (const double u : {0.1, 0.5, 0.9, 1.0}) {
+    const double exact = 0.5 * (std::sqrt(1.0 - u * u) + std::asin(u) / u);
+    EXPECT_NEAR(ladder::mean_chord_depth_m(0.014, 0.014 * u), 0.014 * exact, 0.004 * 0.014);
+  }
+}
+
+// Sums of moments have the mean and covariance of all their points together.
+TEST(MomentSum, AddsUpToTheWholeSet) {
+  base::Rng rng(4);
+  ladder::MomentSum parts, whole;
+  for (int part = 0; part < 5; ++part) {
+    ladder::MomentSum points;
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector3d p(rng.gaussian(), 2.0 * rng.gaussian(), 5.0 + 0.1 * rng.gaussian());
+      points.add(1.0, p, Eigen::Matrix3d::Zero());
+      whole.add(1.0, p, Eigen::Matrix3d::Zero());
+    }
+    parts.add(points.weight, points.mean(), points.covariance());
+  }
+  EXPECT_NEAR((parts.mean() - whole.mean()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((parts.covariance() - whole.covariance()).norm(), 0.0, 1e-11);
+}
+
+// The nearest places of two lines are joined by a perpendicular; parallel lines have their
+// distance.
+TEST(Axis, NearestPlacesArePerpendicular) {
+  base::Rng rng(2);
+  const auto direction = [&] {
+    return Eigen::Vector3d(rng.gaussian(), rng.gaussian(), rng.gaussian()).normalized();
+  };
+  for (int i = 0; i < 100; ++i) {
+    const ladder::Axis a{direction(), direction()}, b{2.0 * direction(), direction()};
+    const ladder::Approach at = ladder::nearest(a, b);
+    const Eigen::Vector3d joint = a.at(at.t) - b.at(at.u);
+    EXPECT_NEAR(joint.dot(a.direction), 0.0, 1e-6);
+    EXPECT_NEAR(joint.dot(b.direction), 0.0, 1e-6);
+    EXPECT_NEAR(joint.norm(), at.distance_m, 1e-9);
+  }
+  const ladder::Axis x{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, above{{5.0, 0.0, 3.0}, {1.0, 0.0, 0.0}};
+  EXPECT_NEAR(ladder::nearest(x, above).distance_m, 3.0, 1e-12);
+}
+
+// Stretches cover what is marked, inside the bar only.
+TEST(Stretches, MarksOnlyInside) {
+  ladder::Stretches stretches;
+  ladder::mark(stretches, -1.0, -0.5, 0.4);
+  ladder::mark(stretches, 0.5, 1.0, 0.4);
+  ladder::mark(stretches, 0.0, 0.1, 0.0);
+  EXPECT_TRUE(stretches.none());
+  ladder::mark(stretches, -1.0, 0.099, 0.4);
+  EXPECT_EQ(stretches.count(), 32U);
+  ladder::mark(stretches, 0.0, 9.0, 0.4);
+  EXPECT_TRUE(stretches.all());
+}
+
+// Rungs at 0.30 m with one missing and a few millimetres of error give 0.30 m.
+TEST(Spacing, SurvivesAMissingRung) {
+  std::vector<double> heights_m = {1.502, 0.0, 0.301, 0.9, 1.198};
+  const ladder::Spacing spacing = ladder::fit_spacing(heights_m, {});
+  EXPECT_EQ(spacing.num_rungs, 5);
+  EXPECT_NEAR(spacing.spacing_m, 0.30, 0.001);
+  EXPECT_LT(spacing.sigma_m, 0.002);
+}
+
+// Fewer than three rungs, or heights without a common step, have no spacing.
+TEST(Spacing, NeedsThreeRegularRungs) {
+  std::vector<double> none, two = {0.0, 0.3}, same = {1.0, 1.0, 1.0};
+  EXPECT_EQ(ladder::fit_spacing(none, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing(two, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing(same, {}).num_rungs, 0);
+  std::vector<double> irregular = {0.0, 0.3, 0.75};
+  EXPECT_EQ(ladder::fit_spacing(irregular, {}).num_rungs, 0);
+}
+
+// Unequal steps that still pass as regular show in the standard error.
+TEST(Spacing, ErrorGrowsWithIrregularity) {
+  std::vector<double> regular = {0.0, 0.3, 0.6, 0.9};
+  std::vector<double> uneven = {0.0, 0.32, 0.60, 0.92};
+  EXPECT_LT(ladder::fit_spacing(regular, {}).sigma_m, 0.0015);
+  EXPECT_GT(ladder::fit_spacing(uneven, {}).sigma_m, 0.005);
+}
+
+// Only nodes off every plane with enough points are taken, in order of height, the heaviest first
+// when there are too many.
+TEST(BarNodes, TakesOffPlaneNodesByHeight) {
+  ladder::NodeCloud cloud;
+  for (int i = 0; i < 40; ++i) {
+    cloud.id.push_back(i);
+    cloud.x_m.push_back(1.0F);
+    cloud.y_m.push_back(0.0F);
+    cloud.z_m.push_back(static_cast<float>((i * 7) % 40));
+    cloud.node_class.push_back(ladder::NodeClass::kUnknown);
+    cloud.plane.push_back(i % 2 == 0 ? -1 : 0);
+    ladder::HeadMoment moment;
+    moment.node = i;
+    moment.weight = i < 4 ? 0.1F : static_cast<float>(i);
+    moment.mean_m = {1.0F, 0.0F, cloud.z_m.back()};
+    cloud.moments.push_back(moment);
+  }
+  ladder::LadderParams params;
+  ladder::BarNodes all(params);
+  all.gather(cloud);
+  EXPECT_EQ(all.size(), 18);
+  for (int i = 1; i < all.size(); ++i) EXPECT_LT(all.position_m(i - 1).z(), all.position_m(i).z());
+  const auto range = all.between(10.0, 20.0);
+  for (int i = 0; i < all.size(); ++i) {
+    const bool inside = all.position_m(i).z() >= 10.0 && all.position_m(i).z() <= 20.0;
+    EXPECT_EQ(inside, i >= range.begin && i < range.end);
+  }
+  params.max_nodes = 16;
+  ladder::BarNodes few(params);
+  few.gather(cloud);
+  EXPECT_EQ(few.size(), 16);
+  for (int i = 0; i < few.size(); ++i) EXPECT_GE(few.weight(i), 8.0);
+}
+
+}  // namespace
