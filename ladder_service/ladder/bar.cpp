@@ -10,7 +10,7 @@ bool fit(const BarNodes& nodes, std::span<const int> members, Bar& bar) {
   bar.sum = MomentSum{};
   Eigen::Vector3d eye_sum_m = Eigen::Vector3d::Zero();
   for (const int k : members) {
-    bar.sum.add(nodes[k].sum);
+    bar.sum.add(nodes.sum(k));
     eye_sum_m += nodes[k].eye_sum_m;
   }
   bar.spread = principal_axis(bar.sum.covariance());

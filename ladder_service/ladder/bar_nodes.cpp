@@ -30,6 +30,7 @@ BarNodes::BarNodes(const LadderParams& params)
   order_.reserve(params.max_cloud_nodes);
   nodes_.reserve(max_nodes_);
   position_m_.reserve(max_nodes_);
+  sum_.reserve(max_nodes_);
   height_m_.reserve(max_nodes_);
 }
 
@@ -87,10 +88,12 @@ void BarNodes::gather(const NodeCloud& cloud) {
   std::sort(order_.begin(), order_.end(), lower);
   nodes_.clear();
   position_m_.clear();
+  sum_.clear();
   height_m_.clear();
   for (const int i : order_) {
     nodes_.push_back(unordered_[i]);
     position_m_.push_back(unordered_[i].position_m);
+    sum_.push_back(unordered_[i].sum);
     height_m_.push_back(unordered_[i].position_m.z());
   }
 }

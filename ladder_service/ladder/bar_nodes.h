@@ -42,7 +42,8 @@ class BarNodes {
   int size() const { return static_cast<int>(nodes_.size()); }
   const BarNode& operator[](int i) const { return nodes_[i]; }
   const Eigen::Vector3d& position_m(int i) const { return position_m_[i]; }
-  double weight(int i) const { return nodes_[i].sum.weight; }
+  const MomentSum& sum(int i) const { return sum_[i]; }
+  double weight(int i) const { return sum_[i].weight; }
   /// Nodes with from_m <= height <= to_m.
   Range between(double from_m, double to_m) const;
 
@@ -54,7 +55,9 @@ class BarNodes {
   double weight_without_moments_;
   std::vector<BarNode> unordered_, nodes_;
   std::vector<int> order_;
+  // Copies of what the inner loops read, close together in memory.
   std::vector<Eigen::Vector3d> position_m_;
+  std::vector<MomentSum> sum_;
   std::vector<double> height_m_;
 };
 

@@ -20,7 +20,7 @@ int sum_neighborhood(const BarNodes& nodes, int k, double radius_m,
   int count = 0;
   for (int j = range.begin; j < range.end; ++j) {
     if ((nodes.position_m(j) - center).squaredNorm() >= radius_m * radius_m || taken[j]) continue;
-    sum.add(nodes[j].sum);
+    sum.add(nodes.sum(j));
     ++count;
   }
   return count;

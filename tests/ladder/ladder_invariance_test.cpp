@@ -26,6 +26,9 @@ class Invariance : public testing::TestWithParam<ladder::Mode> {
     params.paper.inlier_m = 0.02;
     params.paper.outlier_m = 0.04;
     params.paper.tries = 300;
+    params.paper.inlier_ratio = 1.0;
+    params.paper.xi = 0.2;
+    params.paper.xi_age = 0.05;
     return params;
   }
   LadderScene scene() const {
