@@ -28,7 +28,7 @@ void gate_range(const std::int16_t* depth_mm, int width, const Gates& gates,
   const std::int16_t high = gates.max_mm;
   for (int c = 0; c < width; ++c) {
     const std::int16_t d = depth_mm[c];
-    gated_mm[c] = static_cast<std::int16_t>((d >= low) & (d <= high) ? d : 0);
+    gated_mm[c] = static_cast<std::int16_t>(d >= low && d <= high ? d : 0);
   }
 }
 
@@ -79,7 +79,7 @@ std::int16_t difference(std::int16_t a, std::int16_t b) {
 bool is_close(std::int16_t neighbor_mm, std::int16_t d, std::int16_t step) {
   const std::int16_t gap = difference(neighbor_mm, d);
   const auto size = static_cast<std::int16_t>(gap < 0 ? -gap : gap);
-  return (neighbor_mm != 0) & (size <= step);
+  return neighbor_mm != 0 && size <= step;
 }
 
 template <bool kDropIsolated>
@@ -96,10 +96,10 @@ int drop_edges_in_row(const Rows& rows, int width, Step step, std::int16_t* kept
                                           std::min(present(up, d), present(down, d)));
     const std::int16_t farthest = std::max(std::max(present(left, d), present(right, d)),
                                            std::max(present(up, d), present(down, d)));
-    bool keep = !((difference(d, nearest) > t) & (difference(farthest, d) > t));
+    bool keep = difference(d, nearest) <= t || difference(farthest, d) <= t;
     if constexpr (kDropIsolated) {
-      keep &=
-          is_close(left, d, t) | is_close(right, d, t) | is_close(up, d, t) | is_close(down, d, t);
+      keep = keep && (is_close(left, d, t) || is_close(right, d, t) || is_close(up, d, t) ||
+                      is_close(down, d, t));
     }
     kept_mm[c] = static_cast<std::int16_t>(keep ? d : 0);
   }
