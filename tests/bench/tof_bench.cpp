@@ -96,7 +96,3 @@ BENCHMARK_CAPTURE(quad_frame, radial_wrap, tof::DepthKind::kRadial, 4.5)
     ->Arg(60000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK(filter_alone)->Unit(benchmark::kMicrosecond);
-
-#ifdef TOF_BENCH_MAIN
-BENCHMARK_MAIN();
-#endif
