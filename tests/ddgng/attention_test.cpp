@@ -101,16 +101,21 @@ TEST(Attention, SilentHeadsLeaveTheWorkspace) {
   EXPECT_TRUE(attention.contains({12, 0, 1}));
 }
 
-// Below the lowest safe ground nothing draws attention; a table's top does not count as floor.
+// Below the lowest safe ground nothing draws attention; neither a table's top nor a
+// plane of another class counts as floor.
 TEST(Attention, NothingBelowTheFloor) {
   const structure_scene::Cloud cloud;
-  Topology topology;
-  topology.planes.push_back({Eigen::Vector3f::UnitZ(), 0.4F, Class::kSafeGround});
-  topology.planes.push_back({Eigen::Vector3f::UnitZ(), -0.2F, Class::kSafeGround});
+  const Plane table{Eigen::Vector3f::UnitZ(), 0.4F, Class::kSafeGround};
+  const Plane floor{Eigen::Vector3f::UnitZ(), -0.2F, Class::kSafeGround};
+  const Plane shaft{Eigen::Vector3f::UnitZ(), -2.0F, Class::kObstacle};
   Attention attention(StructureParams(), 1);
-  attention.set_regions(topology, cloud.view());
-  EXPECT_TRUE(attention.contains({1, 0, 0.1F}));
-  EXPECT_FALSE(attention.contains({1, 0, -0.5F}));
+  Topology topology;
+  for (const auto& planes : {std::vector{table, floor, shaft}, std::vector{shaft, floor, table}}) {
+    topology.planes = planes;
+    attention.set_regions(topology, cloud.view());
+    EXPECT_TRUE(attention.contains({1, 0, 0.1F}));
+    EXPECT_FALSE(attention.contains({1, 0, -0.5F}));
+  }
   attention.set_regions(Topology(), cloud.view());
   EXPECT_TRUE(attention.contains({1, 0, -0.5F}));
 }

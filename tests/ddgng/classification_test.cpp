@@ -71,6 +71,29 @@ TEST(ClassifyLabels, OnlyLargeLabelsAreGroundOrWall) {
   EXPECT_EQ(class_of(label_with(normal_at(45), 1.0F, 100)), Class::kObstacle);
 }
 
+// Where labels meet, a node is ground before wall and wall before obstacle; without a face it is an
+// obstacle.
+TEST(ClassifyNodes, GroundBeforeWallBeforeObstacle) {
+  Topology topology;
+  for (int id = 0; id < 6; ++id) topology.node_id.push_back(id);
+  topology.labels.resize(3);
+  topology.labels[0].label_class = Class::kSafeGround;
+  topology.labels[1].label_class = Class::kObstacle;
+  topology.labels[2].label_class = Class::kWall;
+  topology.faces.resize(3);
+  topology.faces[0].nodes = {0, 1, 2};
+  topology.faces[1].nodes = {1, 3, 4};
+  topology.faces[2].nodes = {2, 3, 4};
+  for (const int last_node : {4, 5}) {
+    topology.faces[1].nodes[2] = last_node;
+    for (int i = 0; i < 3; ++i) topology.faces[i].label = i;
+    classify_nodes_by_labels(topology);
+    using enum Class;
+    EXPECT_EQ(topology.node_class,
+              (std::vector{kSafeGround, kSafeGround, kSafeGround, kWall, kWall, kObstacle}));
+  }
+}
+
 // The safety degree falls evenly from 1 (level) to 0 (vertical) and stays 0 beyond.
 TEST(SafetyDegree, FallsWithTheSlope) {
   EXPECT_FLOAT_EQ(safety_degree(normal_at(0)), 1.0F);

@@ -96,6 +96,28 @@ TEST(Objects, ApproachingIsSuspected) {
   EXPECT_FALSE(only_object(finder, chain_at({1, 8.95F, 0.5F})).suspected);
 }
 
+// Passing a corner of the space on the way out is no approach.
+TEST(Objects, LeavingAcrossACornerIsNotSuspected) {
+  ObjectFinder finder(StructureParams(), 100, 100);
+  only_object(finder, chain_at({0.1F, 1.1F, 0.5F}));
+  EXPECT_FALSE(only_object(finder, chain_at({0.07F, 1.09F, 0.5F})).suspected);
+}
+
+// After a merger, the whole follows the part that it shares most nodes with.
+TEST(Objects, TheWholeFollowsItsLargerPart) {
+  for (const int num_first : {2, 4}) {
+    ObjectFinder finder(StructureParams(), 100, 100);
+    const Topology whole = chain_at({1, 0, 0.5F}, 6);
+    Topology parts = whole;
+    parts.edges.erase(parts.edges.begin() + num_first - 1);
+    finder.build(cloud_at(0.1F), parts);
+    ASSERT_EQ(parts.objects.size(), 2U);
+    const float larger_y_m = parts.objects[num_first == 2 ? 1 : 0].center_m.y();
+    const Object object = only_object(finder, whole);
+    EXPECT_NEAR(object.velocity_m_s.y(), -larger_y_m / 0.1F, 1e-4F);
+  }
+}
+
 // After a split, each part follows the object that it shares most nodes with.
 TEST(Objects, PartsFollowTheObjectOfTheirNodes) {
   ObjectFinder finder(StructureParams(), 100, 100);

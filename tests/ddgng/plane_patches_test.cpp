@@ -63,6 +63,20 @@ TEST_P(PlanePatchesTest, LadderIsNoPatch) {
   EXPECT_EQ(patches.size(), 0);
 }
 
+// Nor are free boards one, though they lie in one plane and have some interior.
+TEST_P(PlanePatchesTest, BoardsAreNoPatch) {
+  structure_scene::Cloud cloud;
+  base::Rng rng(GetParam());
+  for (int i = 0; i < 8000; ++i) {
+    const auto u = static_cast<float>(rng.uniform());
+    const auto v = static_cast<float>(rng.uniform());
+    cloud.add({1.0F, 0.3F * static_cast<float>(i % 4) + 0.07F * u, 0.8F * v});
+  }
+  PlanePatches patches{StructureParams()};
+  patches.find(cloud.view(), all_points(cloud));
+  EXPECT_EQ(patches.size(), 0);
+}
+
 // The front is found within its borders, not beyond them.
 TEST_P(PlanePatchesTest, FrontIsAPatch) {
   const structure_scene::Cloud cloud = ladder_and_front(GetParam(), 3000);
