@@ -2,6 +2,7 @@
 #include "tests/ddgng/structure_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace structure_scene {
@@ -14,10 +15,11 @@ float uniform(base::Rng& rng, float low, float high) {
   return low + (high - low) * static_cast<float>(rng.uniform());
 }
 
+// Braces, unlike parentheses, fix the order of the draws for all compilers.
 Eigen::Vector3f noise(base::Rng& rng, float sigma_m) {
-  return sigma_m * Eigen::Vector3f(static_cast<float>(rng.gaussian()),
-                                   static_cast<float>(rng.gaussian()),
-                                   static_cast<float>(rng.gaussian()));
+  const std::array<double, 3> draw = {rng.gaussian(), rng.gaussian(), rng.gaussian()};
+  return sigma_m * Eigen::Vector3f(static_cast<float>(draw[0]), static_cast<float>(draw[1]),
+                                   static_cast<float>(draw[2]));
 }
 
 /// Collects nodes and edges of one part after another.
@@ -141,8 +143,9 @@ ddgng::Topology random_tangle(base::Rng& rng, int num_nodes) {
   std::vector<Eigen::Vector3f> nodes_m;
   std::vector<std::pair<int, int>> edges;
   for (int i = 0; i < num_nodes; ++i) {
-    nodes_m.emplace_back(uniform(rng, 0.5F, 1.5F), uniform(rng, -0.5F, 0.5F),
-                         uniform(rng, 0.0F, 1.0F));
+    const std::array<float, 3> p = {uniform(rng, 0.5F, 1.5F), uniform(rng, -0.5F, 0.5F),
+                                    uniform(rng, 0.0F, 1.0F)};
+    nodes_m.emplace_back(p[0], p[1], p[2]);
     for (int j = 0; j < i; ++j) {
       if (rng.below(100) < 35) edges.emplace_back(j, i);
     }
