@@ -78,6 +78,7 @@ struct AxisFeedback {
   int missed_cycles = 0;  ///< cycles in a row without its state frame
   double position_rad = std::numeric_limits<double>::quiet_NaN();
   double torque_Nm = std::numeric_limits<double>::quiet_NaN();
+  std::uint16_t status_word = 0;     ///< as received (6041h); 0 where the protocol has none
   std::uint16_t error_code = 0;      ///< last reported (603Fh or EMCY), 0 = none
   std::uint32_t digital_inputs = 0;  ///< 60FDh
 };
@@ -117,7 +118,7 @@ class ServoBus {
 
   /// Requests; each begins at the next poll. False (and no effect) in a phase that does not allow
   /// it.
-  virtual bool configure() = 0;  ///< from kIdle or kReady
+  virtual bool configure() = 0;  ///< from kIdle or kReady; listens 300 ms first if not yet speaking
   virtual bool enable() = 0;     ///< from kReady or kStopped; first target of each axis = measured
   virtual bool disable() = 0;    ///< from kEnabling, kEnabled or kStopped: walks down to no torque
   virtual bool stop(StopKind kind) = 0;  ///< in any phase that sends to drives
