@@ -45,7 +45,7 @@ def arguments(argv):
     parser.add_argument("-o", "--out", type=pathlib.Path, required=True, help="the log")
     parser.add_argument("--frames", type=int, default=1, help="how often each frame is repeated, at 15 Hz (default 1)")
     parser.add_argument("--up", type=lambda text: numbers(text, 3), metavar="X,Y,Z",
-                        help="direction of up in the axes of the cloud, as --up=0,-1,0 (default: normal of the fitted floor)")
+                        help="direction of up in the cloud's axes, as --up=0,-1,0 (default: normal of the fitted floor)")
     parser.add_argument("--view", type=lambda text: numbers(text, 4), metavar="X,Y,Z,YAW",
                         help="unorganised clouds: where the heads stand [m, deg] (default: chosen and printed)")
     parser.add_argument("--fx", type=float, default=525.0, help="organised clouds: pinhole model [px] (default 525)")

@@ -89,9 +89,11 @@ class Pcd(unittest.TestCase):
         pcd.read_pcd(good)
         for old, new, words in ((b"VERSION 0.7", b"VERSION 0.5", "VERSION"), (b"WIDTH 1", b"WIDTH 2", "POINTS"),
                                 (b"WIDTH 1", b"WIDTH x", "WIDTH"), (b"SIZE 4 4 4", b"SIZE 4 4", "lengths"),
-                                (b"FIELDS x y z", b"FIELDS x y w", "field z"), (b"TYPE F F F", b"TYPE F F U", "field z"),
+                                (b"FIELDS x y z", b"FIELDS x y w", "field z"),
+                                (b"TYPE F F F", b"TYPE F F U", "field z"),
                                 (b"DATA ascii", b"DATA zip", "zip"), (b"SIZE 4 4 4\n", b"", "lacks SIZE"),
-                                (b"FIELDS x y z", b"FIELDS x x z", "field x"), (b"SIZE 4 4 4", b"SIZE 4 4 2", "field z"),
+                                (b"FIELDS x y z", b"FIELDS x x z", "field x"),
+                                (b"SIZE 4 4 4", b"SIZE 4 4 2", "field z"),
                                 (b"WIDTH 1\nHEIGHT 1", b"WIDTH 0\nHEIGHT 0", "POINTS"),
                                 (b"COUNT 1 1 1", b"COUNT 1 1 0", "field z")):
             self.refused(good.replace(old, new), words)
@@ -158,7 +160,8 @@ class Log(unittest.TestCase):
 
     def test_mistakes_are_explained(self):
         """A wrong file, an impossible wish and a foreign camera end with one line and code 2."""
-        for data, options, words in ((b"junk", (), "not a PCD"), (as_ascii(camera_points()), ("--fx", "25", "--up", "0,0,0"), "length"),
+        for data, options, words in ((b"junk", (), "not a PCD"),
+                                     (as_ascii(camera_points()), ("--fx", "25", "--up", "0,0,0"), "length"),
                                      (as_ascii(camera_points()), ("--fx", "50"), "--fx 25.0"),
                                      (as_ascii([(math.nan,) * 3] * 4, 2, 2), (), "no pixel"),
                                      (as_ascii([(1.0, 2.0, 1.0)], 1, 1), (), "no floor"),
@@ -232,7 +235,8 @@ class Log(unittest.TestCase):
                 if frame.depth_mm[i] == 0:
                     continue
                 depth_m = frame.depth_mm[i] / 1000.0
-                ray = ((i % frame.width_px - frame.cx_px) / frame.fx_px, (i // frame.width_px - frame.cy_px) / frame.fy_px)
+                row, column = divmod(i, frame.width_px)
+                ray = ((column - frame.cx_px) / frame.fx_px, (row - frame.cy_px) / frame.fy_px)
                 p = (depth_m * ray[0], depth_m * ray[1], depth_m)
                 t = tuple(2.0 * v for v in floor_fit.cross((x, y, z), p))
                 turned = floor_fit.cross((x, y, z), t)
