@@ -11,7 +11,7 @@ void read(ConfigTable table, tof::FilterParams& params) {
   table.read("flying_step_m", params.flying_step_m);
   table.read("flying_step_ratio", params.flying_step_ratio);
   table.read("drop_isolated", params.drop_isolated);
-  table.read("white_confidence_at_1_m", params.white_confidence_at_1_m);
+  table.read("white_half_confidence_m", params.white_half_confidence_m);
 }
 
 void read(ConfigTable table, tof::HeadParams& params) {

@@ -39,12 +39,14 @@ void gate_confidence(const std::uint8_t* confidence, int width, int min_confiden
   }
 }
 
-/// A wrapped echo of the brightest surface has confidence <= white / (r + wrap)^2.
-void gate_wrapped(const std::uint8_t* confidence, int width, float wrap_m, float white,
+/// A wrapped echo of the brightest surface has confidence <= 255 / (1 + ((r + wrap) / half)^2).
+void gate_wrapped(const std::uint8_t* confidence, int width, float wrap_m, float half_m,
                   std::int16_t* gated_mm) {
+  const float half_m2 = half_m * half_m;
   for (int c = 0; c < width; ++c) {
     const float far_m = static_cast<float>(gated_mm[c]) * 0.001F + wrap_m;
-    const bool is_bright = static_cast<float>(confidence[c]) * (far_m * far_m) > white;
+    const float needed = 255.0F * half_m2;
+    const bool is_bright = static_cast<float>(confidence[c]) * (half_m2 + far_m * far_m) > needed;
     gated_mm[c] = static_cast<std::int16_t>(is_bright ? gated_mm[c] : 0);
   }
 }
@@ -131,7 +133,7 @@ void Filter::gate(const DepthFrame& frame) {
   const int max_mm = to_mm(frame.range_max_m);
   gates.max_mm =
       static_cast<std::int16_t>(wraps ? std::min(max_mm, to_mm(frame.wrap_range_m) - 1) : max_mm);
-  const bool tells_wrapped = wraps && params_.white_confidence_at_1_m > 0.0;
+  const bool tells_wrapped = wraps && params_.white_half_confidence_m > 0.0;
 
   for (int row = 0; row < height; ++row) {
     std::int16_t* gated = gated_mm_.data() + (row + 1) * stride + 1;
@@ -142,7 +144,7 @@ void Filter::gate(const DepthFrame& frame) {
     gate_confidence(confidence, width, params_.min_confidence, gated);
     if (tells_wrapped) {
       gate_wrapped(confidence, width, static_cast<float>(frame.wrap_range_m),
-                   static_cast<float>(params_.white_confidence_at_1_m), gated);
+                   static_cast<float>(params_.white_half_confidence_m), gated);
     }
   }
 }

@@ -28,12 +28,13 @@ class Filter {
   /// delivered (along the axis or along the ray).
   ///
   /// Wrapped distances, for wrap_range_m > 0: a reading r stands for r, r + wrap, r + 2 wrap ... .
-  /// Echoes fade with the square of the distance, so a surface one wrap farther returns at most
-  /// white_confidence_at_1_m / (r + wrap)^2; a reading at or below that is dropped, as is any
-  /// reading at or beyond the wrap range. What it cannot tell: a true surface that is about
-  /// (r / (r + wrap))^2 as bright as white or darker (4 % at 0.6 m, 20 % at 2 m, 25 % at the wrap
-  /// range for wrap = 2.49 m) is dropped with the wrapped ones; retro-reflectors beyond the wrap
-  /// range pass; without confidence, or with white_confidence_at_1_m = 0, nothing is told.
+  /// Echoes fade with the square of the distance, so a surface one wrap farther has at most the
+  /// confidence of white there, 255 / (1 + ((r + wrap) / white_half_confidence_m)^2); a reading
+  /// with no more is dropped, as is any reading at or beyond the wrap range. What it cannot tell: a
+  /// true surface that is about (r / (r + wrap))^2 as bright as white or darker (4 % at 0.6 m, 20 %
+  /// at 2 m, 25 % at the wrap range for wrap = 2.49 m) is dropped with the wrapped ones;
+  /// retro-reflectors beyond the wrap range pass; without confidence, or with
+  /// white_half_confidence_m = 0, nothing is told.
   ///
   /// Flying pixels lie between an edge and what is behind it: dropped when one 4-neighbour is
   /// nearer and one is farther by more than the step max(flying_step_m, flying_step_ratio * depth).

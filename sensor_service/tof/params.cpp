@@ -13,8 +13,8 @@ std::string check_filter(const FilterParams& p) {
   if (!within(p.min_confidence, 0, 255)) return "filter.min_confidence must be 0..255";
   if (!within(p.flying_step_m, 0.001, 10.0)) return "filter.flying_step_m must be 0.001..10";
   if (!within(p.flying_step_ratio, 0.0, 0.49)) return "filter.flying_step_ratio must be 0..0.49";
-  if (!within(p.white_confidence_at_1_m, 0.0, 1e6)) {
-    return "filter.white_confidence_at_1_m must be 0..1e6";
+  if (!within(p.white_half_confidence_m, 0.0, 1000.0)) {
+    return "filter.white_half_confidence_m must be 0..1000";
   }
   return "";
 }

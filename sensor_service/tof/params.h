@@ -14,9 +14,10 @@ struct FilterParams {
   double flying_step_ratio = 0.05;  ///< of the distance, 0..0.49: the step grows with it beyond
                                     ///< flying_step_m / flying_step_ratio (noise 1 % of range)
   bool drop_isolated = true;        ///< drop pixels without a 4-neighbour at their own depth
-  double white_confidence_at_1_m =
-      255.0;  ///< confidence of a white wall 1 m away, unclipped; tells
-              ///< wrapped distances where wrap_range_m > 0; 0 = off
+  /// Where the confidence of a white wall has fallen to half: 255 / (1 + (distance / this)^2).
+  /// Tells wrapped distances where wrap_range_m > 0; 0 = off. Belongs to the make of head (ours:
+  /// simulator).
+  double white_half_confidence_m = 4.47;
 };
 
 /// When a head counts as alive, and what a new recording is.

@@ -51,10 +51,12 @@ class LiteralFilter {
     if (wraps && d >= std::lround(frame_.wrap_range_m * 1000.0)) return 0;
     if (frame_.confidence.empty()) return d;
     if (frame_.confidence[i] < params_.min_confidence) return 0;
-    if (!wraps || params_.white_confidence_at_1_m == 0.0) return d;
+    if (!wraps || params_.white_half_confidence_m == 0.0) return d;
     const float far_m = static_cast<float>(d) * 0.001F + static_cast<float>(frame_.wrap_range_m);
-    const float white = static_cast<float>(params_.white_confidence_at_1_m);
-    return static_cast<float>(frame_.confidence[i]) * (far_m * far_m) <= white ? 0 : d;
+    const float half_m = static_cast<float>(params_.white_half_confidence_m);
+    const float half_m2 = half_m * half_m;
+    const float strength = static_cast<float>(frame_.confidence[i]) * (half_m2 + far_m * far_m);
+    return strength <= 255.0F * half_m2 ? 0 : d;
   }
 
   const tof::DepthFrame& frame_;
@@ -110,7 +112,7 @@ TEST(Filter, AgreesWithItsDefinition) {
   variants[2].flying_step_ratio = 0.0;
   variants[3].flying_step_m = 0.001;
   variants[3].flying_step_ratio = 0.49;
-  variants[3].white_confidence_at_1_m = 0.0;
+  variants[3].white_half_confidence_m = 0.0;
   for (const auto& params : variants) {
     tof::Filter filter(params);
     for (int i = 0; i < 300; ++i) {
@@ -194,23 +196,27 @@ TEST(Filter, StepScalesWithDistance) {
   }
 }
 
-// A wall one wrap farther looks near but is dim; a true surface at that distance is bright.
-TEST(Filter, WrappedWallIsDimmerThanATrueOne) {
-  const double white = 255.0;
+/// What a head reports of a surface of this reflectance (white = 1).
+std::uint8_t confidence_of(double reflectance, double distance_m) {
+  const double half_m = tof::FilterParams{}.white_half_confidence_m;
+  const double fading = distance_m * distance_m / (half_m * half_m);
+  return static_cast<std::uint8_t>(255.0 * reflectance / (reflectance + fading));
+}
+
+// A wall one wrap farther looks near but is dim, however bright it is; a dark rung at that distance
+// is brighter. Without confidence it cannot be told and is believed.
+TEST(Filter, WrappedWallIsDimmerThanATrueRung) {
   const double wrap_m = 2.49;
-  const double shown_m = 0.7;
-  FrameBuilder builder(6, 6, 700);
-  builder.frame.wrap_range_m = wrap_m;
-  const double wrapped = white / ((shown_m + wrap_m) * (shown_m + wrap_m));
-  builder.confidence.assign(36, static_cast<std::uint8_t>(wrapped));
-  EXPECT_EQ(num_kept(builder), 0);
-  // A dark rung (a fifth of white, clipped to a byte) passes.
-  const double dark = std::min(255.0, 0.2 * white / (shown_m * shown_m));
-  builder.confidence.assign(36, static_cast<std::uint8_t>(dark));
-  EXPECT_EQ(num_kept(builder), 36);
-  // Without confidence it cannot be told and is believed.
-  builder.confidence.clear();
-  EXPECT_EQ(num_kept(builder), 36);
+  for (const double shown_m : {0.3, 0.7, 1.0, 1.4}) {
+    FrameBuilder builder(6, 6, static_cast<std::int16_t>(1000.0 * shown_m));
+    builder.frame.wrap_range_m = wrap_m;
+    builder.confidence.assign(36, confidence_of(1.0, shown_m + wrap_m));
+    EXPECT_EQ(num_kept(builder), 0) << shown_m;
+    builder.confidence.assign(36, confidence_of(0.2, shown_m));
+    EXPECT_EQ(num_kept(builder), 36) << shown_m;
+    builder.confidence.clear();
+    EXPECT_EQ(num_kept(builder), 36) << shown_m;
+  }
 }
 
 // A single-frequency mode never shows a distance beyond its wrap range.

@@ -27,7 +27,7 @@ TEST(TofParams, FaultsNameTheField) {
       {"filter.min_confidence", [](auto& p) { p.filter.min_confidence = 256; }},
       {"filter.flying_step_m", [](auto& p) { p.filter.flying_step_m = 0.0; }},
       {"filter.flying_step_ratio", [](auto& p) { p.filter.flying_step_ratio = 0.5; }},
-      {"filter.white_confidence_at_1_m", [](auto& p) { p.filter.white_confidence_at_1_m = kNaN; }},
+      {"filter.white_half_confidence_m", [](auto& p) { p.filter.white_half_confidence_m = kNaN; }},
       {"heads.period_s", [](auto& p) { p.heads.period_s = 0.0; }},
       {"heads.dead_periods", [](auto& p) { p.heads.dead_periods = 1.0; }},
       {"heads.backward_reset_s", [](auto& p) { p.heads.backward_reset_s = -1.0; }},
