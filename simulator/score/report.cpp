@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/score/report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -105,10 +106,10 @@ template <class T>
 std::string line(const char* name, const T& value, const char* unit = "") {
   std::string shown = to_value(value);
   if (shown == "null") shown = "-";
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, "%-34s %s%s%s\n", name, shown.c_str(), *unit ? " " : "",
-                unit);
-  return buffer;
+  constexpr std::size_t kColumn = 35;
+  std::string text = name;
+  text.resize(std::max(text.size(), kColumn), ' ');
+  return text + shown + (*unit != '\0' ? " " : "") + unit + "\n";
 }
 
 }  // namespace

@@ -391,6 +391,13 @@ TEST(Report, KeysFollowTheTruth) {
   EXPECT_THAT(json, HasSubstr("\"messages_lost\": 0"));
 }
 
+// A long list of bars does not swallow the lines behind it.
+TEST(Report, LongListsStayLines) {
+  Score score;
+  score.bars_m = std::vector<double>(100, 1.23456);
+  EXPECT_THAT(to_text(score), HasSubstr("1.23456] m\nlatency"));
+}
+
 // Text from a message cannot break the JSON.
 TEST(Report, QuotesAreEscaped) {
   truth_t named = truth();
