@@ -114,7 +114,7 @@ TEST_F(LadderService, LadderIsConfirmed) {
   EXPECT_EQ(ladder->num_grasps, 5);
   for (int i = 0; i < ladder->num_rungs; ++i) {
     EXPECT_EQ(ladder->rung_state[i], ladder_t::RUNG_TRUSTED);
-    EXPECT_NEAR(ladder->rung_z0_m[i], 0.1F + 0.3F * static_cast<float>(i), 0.01F);
+    EXPECT_NEAR(ladder->rung_z0_m[i], 0.1F + 0.3F * static_cast<float>(i), 0.02F);
     EXPECT_GT(ladder->rung_y0_m[i], ladder->rung_y1_m[i]) << "end 0 is the left one";
     EXPECT_GT(ladder->rung_cov_xx_m2[i], 0.0F);
   }
