@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulator/plant/motor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace simulator {
+
+Motor::Motor(const MotorParams& params, double position_rad)
+    : params_(params), position_rad_(position_rad), lower_stop_rad_(params.min_rad) {}
+
+void Motor::set_position(double position_rad) {
+  position_rad_ = position_rad;
+  velocity_rad_s_ = 0.0;
+}
+
+void Motor::follow(double target_rad, double feed_forward_rad_s, const MotorLimits& limits,
+                   double dt_s) {
+  const double error = target_rad - position_rad_;
+  // Never faster than can be braked before the target, else the limited acceleration overshoots.
+  const double brakable = std::sqrt(2.0 * params_.max_acceleration_rad_s2 * std::fabs(error));
+  const double wanted = std::min(std::fabs(error) / params_.lag_s, brakable);
+  step((error < 0.0 ? -wanted : wanted) + feed_forward_rad_s, limits, dt_s);
+}
+
+void Motor::ramp_down(double deceleration_rad_s2, const MotorLimits& limits, double dt_s) {
+  const double slower =
+      std::max(0.0, std::fabs(velocity_rad_s_) - std::max(deceleration_rad_s2, 0.1) * dt_s);
+  step(velocity_rad_s_ < 0.0 ? -slower : slower, limits, dt_s);
+}
+
+void Motor::step(double wanted_rad_s, const MotorLimits& limits, double dt_s) {
+  const double max_velocity =
+      std::min(params_.max_velocity_rad_s * speed_share, limits.velocity_rad_s);
+  double wanted = std::clamp(wanted_rad_s, -max_velocity, max_velocity);
+  if (reversed) wanted = -wanted;
+  const double max_change = params_.max_acceleration_rad_s2 * dt_s;
+  const double change = std::clamp(wanted - velocity_rad_s_, -max_change, max_change);
+  const double torque_limit = std::min(params_.peak_torque_Nm, limits.torque_Nm);
+  const double asked_Nm = params_.inertia_kg_m2 * change / dt_s + load_Nm_;
+  torque_Nm_ = std::clamp(asked_Nm, -torque_limit, torque_limit);
+  saturated_ = torque_Nm_ != asked_Nm;
+  velocity_rad_s_ += (torque_Nm_ - load_Nm_) / params_.inertia_kg_m2 * dt_s;
+  velocity_rad_s_ =
+      std::clamp(velocity_rad_s_, -params_.max_velocity_rad_s, params_.max_velocity_rad_s);
+  move(dt_s);
+}
+
+void Motor::release(bool brake, double dt_s) {
+  torque_Nm_ = 0.0;
+  saturated_ = false;
+  if (brake) {
+    velocity_rad_s_ = 0.0;
+    return;
+  }
+  // Gear friction lets a loaded joint creep, not fly.
+  constexpr double kCreep_rad_s_Nm = 0.1;
+  velocity_rad_s_ = std::clamp(-load_Nm_ * kCreep_rad_s_Nm, -params_.max_velocity_rad_s,
+                               params_.max_velocity_rad_s);
+  move(dt_s);
+}
+
+void Motor::move(double dt_s) {
+  if (stuck) velocity_rad_s_ = 0.0;
+  position_rad_ += velocity_rad_s_ * dt_s;
+  const double lower = std::max(params_.min_rad, lower_stop_rad_);
+  if (position_rad_ < lower || position_rad_ > params_.max_rad) {
+    position_rad_ = std::clamp(position_rad_, lower, params_.max_rad);
+    velocity_rad_s_ = 0.0;
+  }
+}
+
+}  // namespace simulator
