@@ -13,6 +13,7 @@ Growing::Growing(const GrowingParams& params)
     : params_(params),
       inside_weight_(insertion_weight(params, true)),
       graph_(params.max_nodes, params.max_degree),
+      search_(graph_.padded_slots()),
       error_(graph_.padded_slots()),
       utility_(graph_.padded_slots()),
       inside_(graph_.padded_slots()),
@@ -24,6 +25,7 @@ Growing::Growing(const GrowingParams& params)
 
 void Growing::clear() {
   graph_.clear();
+  search_.clear();
   std::fill(error_.begin(), error_.end(), 0.0F);
   std::fill(utility_.begin(), utility_.end(), 0.0F);
   std::fill(inside_.begin(), inside_.end(), std::uint8_t{0});
@@ -35,26 +37,29 @@ void Growing::clear() {
 
 void Growing::start(const Eigen::Vector3f& h1_m, const Eigen::Vector3f& h2_m) {
   CHECK(graph_.num_nodes() == 0, "started twice");
-  graph_.add_node(h1_m);
-  graph_.add_node(h2_m);
+  for (const Eigen::Vector3f& h_m : {h1_m, h2_m}) search_.add(graph_.add_node(h_m), false, h_m);
 }
 
 Winners Growing::signal(const Eigen::Vector3f& signal_m) {
   ++counts_.signals;
-  const Winners winners = nearest_two_linear(graph_, signal_m);
+  const Winners winners = search_.nearest_two(graph_, signal_m);
   const int s1 = winners.first;
+  search_.learn_spacing(graph_, inside_.data(), winners);
   // The new edge is made after the others aged, so it starts at 0 and cannot be too old below.
   graph_.age_edges(s1);
   counts_.edges_dropped += graph_.join(s1, winners.second);
   error_[s1] += error_decay_.stored(winners.first_m2);
   utility_[s1] += decay_of(s1).stored(winners.second_m2 - winners.first_m2);
-  graph_.move_towards(s1, signal_m, params_.winner_rate);
-  for (const int j : graph_.neighbours(s1)) {
-    graph_.move_towards(j, signal_m, params_.neighbour_rate);
-  }
+  move_towards(s1, signal_m, params_.winner_rate);
+  for (const int j : graph_.neighbours(s1)) move_towards(j, signal_m, params_.neighbour_rate);
   remove_old_edges(s1);
   fade();
   return winners;
+}
+
+void Growing::move_towards(int slot, const Eigen::Vector3f& signal_m, float rate) {
+  graph_.move_towards(slot, signal_m, rate);
+  search_.move(slot, inside(slot), graph_.position_m(slot));
 }
 
 void Growing::remove_old_edges(int s1) {
@@ -113,7 +118,7 @@ int Growing::insert(Weighting weighting) {
     utility_[parent] *= 1.0F - params_.error_cut;
   }
   error_[r] = 0.5F * (error_[u] + error_[f]);
-  inside_[r] = 0;
+  search_.add(r, false, graph_.position_m(r));
   utility_[r] = utility_decay_[0].stored(0.5F * (utility_m2(u) + utility_m2(f)));
   ++counts_.inserted;
   return r;
@@ -143,7 +148,9 @@ int Growing::remove_useless() {
 }
 
 void Growing::remove(int slot) {
-  set_inside(slot, false);
+  search_.remove(slot, inside(slot));
+  if (inside(slot)) --num_inside_;
+  inside_[slot] = 0;
   graph_.remove_node(slot);
   error_[slot] = 0.0F;
   utility_[slot] = 0.0F;
@@ -152,6 +159,8 @@ void Growing::remove(int slot) {
 void Growing::set_inside(int slot, bool inside_now) {
   if (inside(slot) == inside_now) return;
   const float utility = utility_m2(slot);
+  search_.remove(slot, !inside_now);
+  search_.add(slot, inside_now, graph_.position_m(slot));
   inside_[slot] = inside_now ? 1 : 0;
   utility_[slot] = decay_of(slot).stored(utility);
   num_inside_ += inside_now ? 1 : -1;

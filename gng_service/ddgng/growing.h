@@ -59,9 +59,11 @@ class Growing {
     std::int64_t edges_dropped = 0;  ///< given up because a node was full
   };
   const Counts& counts() const { return counts_; }
+  const WinnerSearch::Counts& search_counts() const { return search_.counts(); }
 
  private:
   const Decay& decay_of(int slot) const { return utility_decay_[inside_[slot]]; }
+  void move_towards(int slot, const Eigen::Vector3f& signal_m, float rate);
   void remove_old_edges(int s1);
   void fade();
   void remove(int slot);
@@ -70,6 +72,7 @@ class Growing {
   GrowingParams params_;
   float inside_weight_;
   Graph graph_;
+  WinnerSearch search_;
   // Over slots, as stored by their decays.
   std::vector<float> error_, utility_;
   std::vector<std::uint8_t> inside_;

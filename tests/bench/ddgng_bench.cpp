@@ -108,6 +108,9 @@ void signals(benchmark::State& state) {
   state.counters["signals_per_second"] =
       benchmark::Counter(static_cast<double>(num_signals), benchmark::Counter::kIsRate);
   state.counters["nodes"] = loop.growing().graph().num_nodes();
+  const WinnerSearch::Counts& counts = loop.growing().search_counts();
+  state.counters["linear_share"] =
+      static_cast<double>(counts.linear) / static_cast<double>(counts.searches);
 }
 BENCHMARK(signals)->Name("ddgng")->Arg(500)->Arg(1000)->Arg(2000)->Arg(5000)->Arg(20000);
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -53,14 +54,14 @@ void expect_equal(const Winners& expected, const Winners& found) {
 }
 
 // Runs the test body once per instruction set of this machine.
-class WinnerSearch : public testing::TestWithParam<std::int64_t> {
+class WinnerSearchTest : public testing::TestWithParam<std::int64_t> {
  protected:
   void SetUp() override { hwy::SetSupportedTargetsForTest(GetParam()); }
   void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
 // Two nodes, three nodes, ... around the lanes of a vector: the answer is that of a plain loop.
-TEST_P(WinnerSearch, EqualsBruteForceForFewNodes) {
+TEST_P(WinnerSearchTest, EqualsBruteForceForFewNodes) {
   base::Rng rng(1);
   for (int num_nodes = 2; num_nodes < 70; ++num_nodes) {
     for (const Shape shape : kShapes) {
@@ -74,7 +75,7 @@ TEST_P(WinnerSearch, EqualsBruteForceForFewNodes) {
 }
 
 // The same for a thousand nodes, also for signals far away from all of them.
-TEST_P(WinnerSearch, EqualsBruteForceForManyNodes) {
+TEST_P(WinnerSearchTest, EqualsBruteForceForManyNodes) {
   base::Rng rng(2);
   for (const Shape shape : kShapes) {
     const Graph graph = random_graph(shape, 1000, rng);
@@ -85,7 +86,43 @@ TEST_P(WinnerSearch, EqualsBruteForceForManyNodes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTargets, WinnerSearch,
+// The cells give the answer of the plain loop while nodes come, go, move and change area; some
+// searches are answered by cells alone.
+TEST_P(WinnerSearchTest, CellsEqualBruteForce) {
+  base::Rng rng(3);
+  for (const Shape shape : kShapes) {
+    Graph graph(300, 4);
+    WinnerSearch search(graph.padded_slots());
+    std::vector<std::uint8_t> inside(static_cast<std::size_t>(graph.padded_slots()));
+    for (int i = 0; i < 6000; ++i) {
+      const Eigen::Vector3f v = (i % 50 == 0 ? 1000.0F : 1.0F) * random_point(shape, rng);
+      const auto slot = static_cast<int>(rng.below(300));
+      if (graph.num_nodes() < 2 || (!graph.alive(slot) && graph.num_nodes() < 300)) {
+        const int added = graph.add_node(v);
+        inside[added] = v.x() > 1.0F ? 1 : 0;
+        search.add(added, inside[added] != 0, v);
+      } else if (i % 10 == 0 && graph.num_nodes() > 2) {
+        search.remove(slot, inside[slot] != 0);
+        inside[slot] = 0;
+        graph.remove_node(slot);
+      } else {
+        graph.move_towards(slot, v, 0.3F);
+        search.move(slot, inside[slot] != 0, graph.position_m(slot));
+      }
+      if (graph.num_nodes() < 2) continue;
+      const Eigen::Vector3f query = random_point(shape, rng);
+      const Winners winners = search.nearest_two(graph, query);
+      expect_equal(brute_force(graph, query), winners);
+      if (HasFatalFailure()) return;
+      search.learn_spacing(graph, inside.data(), winners);
+    }
+    if (shape == Shape::kUniform) {
+      EXPECT_LT(search.counts().linear, search.counts().searches / 2);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(AllTargets, WinnerSearchTest,
                          testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
                          [](const auto& target) {
                            return std::string(hwy::TargetName(target.param));
