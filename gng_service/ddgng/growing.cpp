@@ -2,7 +2,6 @@
 #include "ddgng/growing.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "base/check.h"
 #include "ddgng/strength.h"
@@ -17,6 +16,7 @@ Growing::Growing(const GrowingParams& params)
       error_(graph_.padded_slots()),
       utility_(graph_.padded_slots()),
       inside_(graph_.padded_slots()),
+      extremes_(graph_.padded_slots()),
       error_decay_(params.error_decay),
       utility_decay_{Decay(params.utility_decay_outside), Decay(params.utility_decay_inside)} {
   CHECK(check(params).empty(), "unchecked parameters");
@@ -26,18 +26,29 @@ Growing::Growing(const GrowingParams& params)
 void Growing::clear() {
   graph_.clear();
   search_.clear();
-  std::fill(error_.begin(), error_.end(), 0.0F);
-  std::fill(utility_.begin(), utility_.end(), 0.0F);
+  std::fill(error_.begin(), error_.end(), Extremes::kNoError);
+  std::fill(utility_.begin(), utility_.end(), Extremes::kNoUtility);
   std::fill(inside_.begin(), inside_.end(), std::uint8_t{0});
   error_decay_.clear();
   for (Decay& decay : utility_decay_) decay.clear();
   num_inside_ = 0;
+  extremes_.touch_all();
   counts_ = {};
+}
+
+// A new node, outside the suspected area. error and utility as stored.
+int Growing::place(const Eigen::Vector3f& position_m, float error, float utility) {
+  const int slot = graph_.add_node(position_m);
+  search_.add(slot, false, position_m);
+  error_[slot] = error;
+  utility_[slot] = utility;
+  extremes_.touch(slot);
+  return slot;
 }
 
 void Growing::start(const Eigen::Vector3f& h1_m, const Eigen::Vector3f& h2_m) {
   CHECK(graph_.num_nodes() == 0, "started twice");
-  for (const Eigen::Vector3f& h_m : {h1_m, h2_m}) search_.add(graph_.add_node(h_m), false, h_m);
+  for (const Eigen::Vector3f& h_m : {h1_m, h2_m}) place(h_m, 0.0F, 0.0F);
 }
 
 Winners Growing::signal(const Eigen::Vector3f& signal_m) {
@@ -50,6 +61,7 @@ Winners Growing::signal(const Eigen::Vector3f& signal_m) {
   counts_.edges_dropped += graph_.join(s1, winners.second);
   error_[s1] += error_decay_.stored(winners.first_m2);
   utility_[s1] += decay_of(s1).stored(winners.second_m2 - winners.first_m2);
+  extremes_.touch(s1);
   move_towards(s1, signal_m, params_.winner_rate);
   for (const int j : graph_.neighbours(s1)) move_towards(j, signal_m, params_.neighbour_rate);
   remove_old_edges(s1);
@@ -76,17 +88,22 @@ void Growing::remove_old_edges(int s1) {
 void Growing::fade() {
   error_decay_.next_signal();
   if (error_decay_.shrink_due()) {
-    for (float& error : error_) error *= static_cast<float>(Decay::kShrink);
+    for (int slot = 0; slot < graph_.num_slots(); ++slot) {
+      if (graph_.alive(slot)) error_[slot] *= static_cast<float>(Decay::kShrink);
+    }
     error_decay_.shrink();
+    extremes_.touch_all();
   }
   for (int group = 0; group < 2; ++group) {
     Decay& decay = utility_decay_[group];
     decay.next_signal();
     if (!decay.shrink_due()) continue;
     for (int slot = 0; slot < graph_.num_slots(); ++slot) {
-      if (inside_[slot] == group) utility_[slot] *= static_cast<float>(Decay::kShrink);
+      if (!graph_.alive(slot) || inside_[slot] != group) continue;
+      utility_[slot] *= static_cast<float>(Decay::kShrink);
     }
     decay.shrink();
+    extremes_.touch_all();
   }
 }
 
@@ -95,13 +112,22 @@ float Growing::weighted_error(int slot, Weighting weighting) const {
   return weighted ? error_[slot] * inside_weight_ : error_[slot];
 }
 
-int Growing::insert(Weighting weighting) {
-  if (graph_.num_nodes() >= graph_.max_nodes()) return -1;
-  int u = -1;
+// Among nodes with an edge; nearly always the very largest has one.
+int Growing::largest_error(Weighting weighting) {
+  const bool weighted = weighting == Weighting::kErrorAndStrength;
+  int u = extremes_.largest_error(values(), weighted ? inside_weight_ : 1.0F).slot;
+  if (u >= 0 && graph_.alive(u) && graph_.degree(u) > 0) return u;
+  u = -1;
   for (int i = 0; i < graph_.num_slots(); ++i) {
     if (graph_.degree(i) == 0) continue;
     if (u < 0 || weighted_error(i, weighting) > weighted_error(u, weighting)) u = i;
   }
+  return u;
+}
+
+int Growing::insert(Weighting weighting) {
+  if (graph_.num_nodes() >= graph_.max_nodes()) return -1;
+  const int u = largest_error(weighting);
   if (u < 0) return -1;
   int f = -1;
   for (const int j : graph_.neighbours(u)) {
@@ -109,17 +135,17 @@ int Growing::insert(Weighting weighting) {
     if (ahead > 0.0F || (ahead == 0.0F && j < f)) f = j;
   }
 
-  const int r = graph_.add_node(0.5F * (graph_.position_m(u) + graph_.position_m(f)));
-  graph_.separate(u, f);
-  graph_.join(u, r);
-  graph_.join(f, r);
   for (const int parent : {u, f}) {
     error_[parent] *= 1.0F - params_.error_cut;
     utility_[parent] *= 1.0F - params_.error_cut;
+    extremes_.touch(parent);
   }
-  error_[r] = 0.5F * (error_[u] + error_[f]);
-  search_.add(r, false, graph_.position_m(r));
-  utility_[r] = utility_decay_[0].stored(0.5F * (utility_m2(u) + utility_m2(f)));
+  const int r =
+      place(0.5F * (graph_.position_m(u) + graph_.position_m(f)), 0.5F * (error_[u] + error_[f]),
+            utility_decay_[0].stored(0.5F * (utility_m2(u) + utility_m2(f))));
+  graph_.separate(u, f);
+  graph_.join(u, r);
+  graph_.join(f, r);
   ++counts_.inserted;
   return r;
 }
@@ -129,18 +155,8 @@ int Growing::remove_useless() {
   // Both groups on the outside's scale.
   const auto inside_scale =
       static_cast<float>(utility_decay_[0].growth() / utility_decay_[1].growth());
-  float largest_error = -1.0F;
-  float least_utility = std::numeric_limits<float>::max();
-  int l = -1;
-  for (int i = 0; i < graph_.num_slots(); ++i) {
-    if (!graph_.alive(i)) continue;
-    largest_error = std::max(largest_error, error_[i]);
-    const float utility = inside(i) ? utility_[i] * inside_scale : utility_[i];
-    if (utility < least_utility) {
-      least_utility = utility;
-      l = i;
-    }
-  }
+  const float largest_error = extremes_.largest_error(values(), 1.0F).value;
+  const int l = extremes_.least_utility(values(), inside_scale).slot;
   if (error_decay_.value(largest_error) <= params_.utility_threshold * utility_m2(l)) return -1;
   remove(l);
   ++counts_.removed_by_utility;
@@ -152,8 +168,9 @@ void Growing::remove(int slot) {
   if (inside(slot)) --num_inside_;
   inside_[slot] = 0;
   graph_.remove_node(slot);
-  error_[slot] = 0.0F;
-  utility_[slot] = 0.0F;
+  error_[slot] = Extremes::kNoError;
+  utility_[slot] = Extremes::kNoUtility;
+  extremes_.touch(slot);
 }
 
 void Growing::set_inside(int slot, bool inside_now) {
@@ -163,6 +180,7 @@ void Growing::set_inside(int slot, bool inside_now) {
   search_.add(slot, inside_now, graph_.position_m(slot));
   inside_[slot] = inside_now ? 1 : 0;
   utility_[slot] = decay_of(slot).stored(utility);
+  extremes_.touch(slot);
   num_inside_ += inside_now ? 1 : -1;
 }
 

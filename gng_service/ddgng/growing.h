@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "ddgng/decay.h"
+#include "ddgng/extremes.h"
 #include "ddgng/graph.h"
 #include "ddgng/params.h"
 #include "ddgng/winner_search.h"
@@ -67,6 +68,9 @@ class Growing {
   void remove_old_edges(int s1);
   void fade();
   void remove(int slot);
+  SlotValues values() const { return {error_.data(), utility_.data(), inside_.data()}; }
+  int place(const Eigen::Vector3f& position_m, float error, float utility);
+  int largest_error(Weighting weighting);
   float weighted_error(int slot, Weighting weighting) const;
 
   GrowingParams params_;
@@ -76,6 +80,7 @@ class Growing {
   // Over slots, as stored by their decays.
   std::vector<float> error_, utility_;
   std::vector<std::uint8_t> inside_;
+  Extremes extremes_;
   Decay error_decay_;
   Decay utility_decay_[2];  // outside, inside
   int num_inside_ = 0;
