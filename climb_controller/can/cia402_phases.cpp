@@ -193,7 +193,8 @@ void Cia402Bus::advance_enabling() {
 
 void Cia402Bus::advance_disabling() {
   const auto is_off = [](const Cia402Axis& axis) {
-    return !cia402::has_torque(axis.state()) && axis.state() != DriveState::kSwitchedOn;
+    return !cia402::has_torque(axis.state()) && axis.state() != DriveState::kSwitchedOn &&
+           axis.state() != DriveState::kReadyToSwitchOn;
   };
   if (std::all_of(axes_.begin(), axes_.end(), is_off)) {
     set_goal(Goal::kKeep);

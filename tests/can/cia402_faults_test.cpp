@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the CiA 402 bus makes of everything that goes wrong: each cause once, named with its axis,
+// within its bound, and after a fault of the bus not one frame more.
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "bus_rig.h"
+
+namespace can {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+CanFrame error_frame(std::uint32_t error_class, std::uint8_t controller) {
+  CanFrame frame;
+  frame.id = error_class;
+  frame.error = true;
+  frame.dlc = 8;
+  frame.data[1] = controller;
+  return frame;
+}
+
+/// The bus fell silent and stays so, whatever it is asked, until rearm().
+void expect_silence(BusRig& rig) {
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kFaulted);
+  const std::size_t before = rig.line.sent.size();
+  EXPECT_FALSE(rig.bus->enable());
+  EXPECT_FALSE(rig.bus->stop(StopKind::kHold));
+  EXPECT_FALSE(rig.bus->configure());
+  rig.run_ms(500);
+  EXPECT_EQ(rig.line.sent.size(), before);
+}
+
+// Three missed states: the axis is silent after 30 ms and a cycle, not before.
+TEST(Cia402Faults, SilentAxis) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.drives[1].is_mute_on_sync = true;
+  rig.run_ms(30);  // the state of the cycle before was still heard in the first of these
+  EXPECT_FALSE(rig.has(FaultCause::kSilent, 1));
+  EXPECT_EQ(rig.feedback[1].missed_cycles, 2);
+  rig.run_ms(10);
+  EXPECT_TRUE(rig.has(FaultCause::kSilent, 1));
+  EXPECT_FALSE(rig.has(FaultCause::kSilent, 0));
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kEnabled);  // the others are still served
+}
+
+// Two missed states are no fault.
+TEST(Cia402Faults, TwoMissedStatesAreForgiven) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  for (int i = 0; i < 20; ++i) {
+    rig.drives[0].is_mute_on_sync = true;
+    rig.run_ms(20);
+    rig.drives[0].is_mute_on_sync = false;
+    rig.run_ms(10);
+  }
+  EXPECT_TRUE(rig.bus->faults().empty()) << rig.fault_names();
+}
+
+// A heartbeat that stops is noticed within 260 ms although states still arrive.
+TEST(Cia402Faults, HeartbeatLost) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.run_ms(200);
+  rig.drives[0].has_heartbeat = false;
+  rig.run_ms(150);
+  EXPECT_TRUE(rig.bus->faults().empty());
+  rig.run_ms(120);
+  EXPECT_TRUE(rig.has(FaultCause::kHeartbeatLost, 0));
+  EXPECT_EQ(rig.bus->faults().size(), 1U);
+}
+
+// A drive that restarts is told nothing more and is never enabled again by itself.
+TEST(Cia402Faults, UnexpectedBootUp) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.line.put(rig.drives[0].boot_up());
+  rig.cycle();
+  EXPECT_TRUE(rig.has(FaultCause::kUnexpectedBootUp, 0));
+  const std::size_t before = rig.line.sent.size();
+  rig.run_ms(100);
+  for (std::size_t i = before; i < rig.line.sent.size(); ++i) {
+    EXPECT_NE(rig.line.sent[i].id, 0x201U);
+  }
+  EXPECT_EQ(rig.drives[1].control_word(), 0x0F);
+  ASSERT_TRUE(rig.bus->rearm());
+  rig.run_ms(100);
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kIdle);  // it has to be configured anew
+  EXPECT_EQ(rig.drives[1].status_word() & 0x6F, 0x27);
+  ASSERT_TRUE(rig.bus->configure());
+  EXPECT_TRUE(rig.run_until(BusPhase::kReady, 3000)) << rig.fault_names();
+}
+
+// Network state other than operational in a heartbeat.
+TEST(Cia402Faults, LeftOperational) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.line.put(from_hex("701#7F"));
+  rig.cycle();
+  EXPECT_TRUE(rig.has(FaultCause::kLeftOperational, 0));
+}
+
+// Any drive state but operation enabled, once enabled, is a fault in the very next cycle.
+TEST(Cia402Faults, LeftOperationEnabled) {
+  for (const int status : {0x0240, 0x0221, 0x0223, 0x0207, 0x020F, 0x0208, 0x0200}) {
+    BusRig rig(2);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.drives[1].ignores_control_word = true;
+    rig.drives[1].set_status_word(static_cast<std::uint16_t>(status));
+    rig.run_ms(20);
+    EXPECT_TRUE(rig.has(FaultCause::kLeftOperationEnabled, 1)) << std::hex << status;
+    EXPECT_FALSE(rig.has(FaultCause::kLeftOperationEnabled, 0));
+    rig.run_ms(100);
+    // Not walked up again, and no fault reset without rearm().
+    EXPECT_EQ(rig.drives[1].control_word() & 0x80, 0);
+    EXPECT_NE(rig.drives[1].control_word(), 0x0F) << std::hex << status;
+  }
+}
+
+// A statusword outside the standard does not make the master drop the limb.
+TEST(Cia402Faults, UnknownStateKeepsTheLastWord) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.drives[0].ignores_control_word = true;
+  rig.drives[0].set_status_word(0x0225);
+  rig.run_ms(100);
+  EXPECT_EQ(rig.drives[0].control_word(), 0x0F);
+  EXPECT_TRUE(rig.has(FaultCause::kLeftOperationEnabled, 0));
+}
+
+// An emergency names its code; voltage and temperature are warnings while the drive stays enabled.
+TEST(Cia402Faults, Emergencies) {
+  struct Row {
+    const char* frame;
+    FaultCause cause;
+    std::uint32_t detail;
+  };
+  const Row rows[] = {{"081#1186210000000000", FaultCause::kEmergency, 0x8611},
+                      {"081#2082010000000000", FaultCause::kEmergency, 0x8220},
+                      {"081#2031040000000000", FaultCause::kWarning, 0x3120},
+                      {"081#1043080000000000", FaultCause::kWarning, 0x4310}};
+  for (const Row& row : rows) {
+    BusRig rig(1);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.line.put(from_hex(row.frame));
+    rig.cycle();
+    ASSERT_EQ(rig.bus->faults().size(), 1U) << row.frame;
+    EXPECT_EQ(rig.bus->faults()[0].cause, row.cause);
+    EXPECT_EQ(rig.bus->faults()[0].detail, row.detail);
+    EXPECT_EQ(rig.feedback[0].error_code, row.detail);
+  }
+}
+
+// "Error gone" is no fault.
+TEST(Cia402Faults, ClearedEmergencyIsNoFault) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.line.put(from_hex("081#0000000000000000"));
+  rig.cycle();
+  EXPECT_TRUE(rig.bus->faults().empty());
+}
+
+// An emergency while configuring forbids to go on, even if no object was refused.
+TEST(Cia402Faults, EmergencyWhileConfiguringForbidsMotion) {
+  BusRig rig(1);
+  rig.drives[0].dead_objects.insert(ScriptedDrive::key(0x1400, 5));  // makes it last 300 ms longer
+  rig.build();
+  rig.cycle();
+  rig.bus->configure();
+  ASSERT_TRUE(rig.run_until(BusPhase::kConfiguring, 1000));
+  rig.line.put(from_hex("081#2082010000000000"));
+  rig.run_ms(1000);
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kIdle);
+  EXPECT_TRUE(rig.has(FaultCause::kEmergency, 0));
+}
+
+// Ten broken frames in a second are counted, the eleventh is a fault; eleven in two seconds are
+// none.
+TEST(Cia402Faults, MalformedFramesByRate) {
+  CanFrame remote = from_hex("181#");
+  remote.remote = true;
+  CanFrame fd = from_hex("181#0000000000000000");
+  fd.fd = true;
+  const CanFrame kinds[] = {
+      from_hex("181#00"), from_hex("00000181#0000000000000000"), remote, fd, from_hex("701#0000"),
+      from_hex("455#00")};
+  for (const CanFrame& broken : kinds) {
+    BusRig rig(1);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    for (int i = 0; i < 10; ++i) rig.line.put(broken);
+    rig.cycle();
+    EXPECT_TRUE(rig.bus->faults().empty()) << hex(broken);
+    EXPECT_EQ(rig.bus->num_malformed(), 10U);
+    rig.line.put(broken);
+    rig.cycle();
+    EXPECT_TRUE(rig.has(FaultCause::kMalformedFrames, -1)) << hex(broken);
+    expect_silence(rig);
+  }
+  BusRig slow(1);
+  ASSERT_TRUE(slow.bring_to_enabled());
+  for (int i = 0; i < 30; ++i) {
+    slow.line.put(from_hex("181#00"));
+    slow.run_ms(110);
+  }
+  EXPECT_TRUE(slow.bus->faults().empty()) << slow.fault_names();
+}
+
+// A frame of a wrong length changes no state of its axis.
+TEST(Cia402Faults, MalformedFramesChangeNothing) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.run_ms(20);
+  const double before = rig.feedback[0].position_rad;
+  rig.line.put(from_hex("181#0802FFFFFF7F00"));
+  rig.cycle();
+  EXPECT_EQ(rig.feedback[0].position_rad, before);
+  EXPECT_EQ(rig.feedback[0].state, DriveState::kOperationEnabled);
+}
+
+// Every kind of frame that only a master sends betrays a second one; from then on: silence.
+TEST(Cia402Faults, ForeignMaster) {
+  for (const char* frame : {"000#0101", "080#", "201#0F0000000000", "210#", "27F#00", "301#00",
+                            "601#4000100000000000", "67F#00", "77F#05"}) {
+    BusRig rig(2);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.line.put(from_hex(frame), true);
+    rig.cycle();
+    ASSERT_TRUE(rig.has(FaultCause::kForeignMaster, -1)) << frame;
+    EXPECT_EQ(rig.bus->faults()[0].detail, 0x80000000U | from_hex(frame).id);
+    expect_silence(rig);
+  }
+}
+
+// A master that is already there is heard before this one sends anything.
+TEST(Cia402Faults, SecondControllerRefusesToStart) {
+  BusRig rig(1);
+  rig.build();
+  rig.cycle();
+  rig.bus->configure();
+  rig.run_ms(250);
+  rig.line.put(from_hex("77F#05"));
+  rig.cycle();
+  EXPECT_TRUE(rig.has(FaultCause::kForeignMaster, -1));
+  expect_silence(rig);
+  EXPECT_TRUE(rig.line.sent.empty());
+}
+
+// Bus-off, restart and error-passive frames silence the bus at once; error-active does not.
+TEST(Cia402Faults, ErrorFrames) {
+  struct Row {
+    CanFrame frame;
+    bool is_fault;
+    FaultCause cause;
+  };
+  const Row rows[] = {{error_frame(0x40, 0), true, FaultCause::kBusOff},
+                      {error_frame(0x100, 0), true, FaultCause::kBusOff},
+                      {error_frame(0x04, 0x10), true, FaultCause::kErrorPassive},
+                      {error_frame(0x04, 0x20), true, FaultCause::kErrorPassive},
+                      {error_frame(0x01, 0), true, FaultCause::kTransmitStalled},
+                      {error_frame(0x04, 0x40), false, FaultCause::kErrorPassive},
+                      {error_frame(0x04, 0x08), false, FaultCause::kErrorPassive},
+                      {error_frame(0x08, 0), false, FaultCause::kErrorPassive}};
+  for (const Row& row : rows) {
+    BusRig rig(1);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.line.put(row.frame);
+    rig.cycle();
+    EXPECT_EQ(rig.has(row.cause, -1), row.is_fault) << row.frame.id;
+    if (row.is_fault) expect_silence(rig);
+  }
+}
+
+// One cycle that does not get out is forgiven, the second in a row is a fault.
+TEST(Cia402Faults, TransmitQueueFull) {
+  for (const TransferStatus status : {TransferStatus::kNoBuffers, TransferStatus::kWouldBlock}) {
+    BusRig rig(2);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.line.send_status = status;
+    rig.cycle();
+    rig.line.send_status = TransferStatus::kDone;
+    rig.cycle();
+    rig.line.send_status = status;
+    rig.cycle();
+    EXPECT_TRUE(rig.bus->faults().empty()) << rig.fault_names();
+    rig.cycle();
+    EXPECT_TRUE(rig.has(FaultCause::kTransmitStalled, -1));
+    rig.line.send_status = TransferStatus::kDone;
+    expect_silence(rig);
+  }
+}
+
+// Frames that have not left stop the sending at once, so that none older than two cycles is behind
+// them; re-arming purges them, and without a purge nothing is sent.
+TEST(Cia402Faults, StaleFramesAreNeverSent) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.polls_between = false;
+  rig.line.has_unsent = true;
+  const std::size_t before = rig.line.sent.size();
+  rig.cycle();
+  EXPECT_EQ(rig.line.sent.size(), before);
+  rig.cycle();
+  EXPECT_TRUE(rig.has(FaultCause::kTransmitStalled, -1));
+  expect_silence(rig);
+  rig.line.purge_result = PurgeResult::kNotPermitted;
+  rig.bus->rearm();
+  rig.run_ms(20);
+  expect_silence(rig);
+  EXPECT_EQ(rig.line.num_purges, 1);
+  rig.line.purge_result = PurgeResult::kPurged;
+  rig.drives[0].position = -444;  // it sagged meanwhile
+  rig.bus->rearm();
+  ASSERT_TRUE(rig.run_until(BusPhase::kReady, 2000)) << rig.fault_names();
+  EXPECT_EQ(rig.drives[0].target(), -444);  // from the measured position, not from the old target
+}
+
+// A lost interface silences the bus; when it is back, nothing happens before rearm().
+TEST(Cia402Faults, InterfaceLostAndBack) {
+  for (const TransferStatus status : {TransferStatus::kNetworkDown, TransferStatus::kGone}) {
+    BusRig rig(1);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.line.receive_status = status;
+    rig.line.send_status = status;
+    rig.line.is_usable = false;
+    rig.cycle();
+    EXPECT_TRUE(rig.has(FaultCause::kInterfaceLost, -1));
+    rig.bus->rearm();
+    rig.run_ms(20);
+    expect_silence(rig);
+    rig.line.receive_status = TransferStatus::kWouldBlock;
+    rig.line.send_status = TransferStatus::kDone;
+    rig.line.is_usable = true;
+    expect_silence(rig);
+    rig.bus->rearm();
+    EXPECT_TRUE(rig.run_until(BusPhase::kReady, 2000)) << rig.fault_names();
+  }
+}
+
+// After a fault of the bus, re-arming listens again before it speaks.
+TEST(Cia402Faults, RearmListensAgain) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.line.put(error_frame(0x40, 0));
+  rig.cycle();
+  const std::size_t before = rig.line.sent.size();
+  rig.bus->rearm();
+  rig.run_ms(280);
+  EXPECT_EQ(rig.line.sent.size(), before);
+  EXPECT_TRUE(rig.run_until(BusPhase::kReady, 500));
+}
+
+// Targets that are no numbers, do not fit or are old are refused whole: all axes keep the last.
+TEST(Cia402Faults, RefusedTargets) {
+  struct Row {
+    AxisTarget target;
+    std::int64_t age_us;
+    int axis;
+  };
+  const Row rows[] = {
+      {{kNan, 0, 0, 1}, 0, 1},   {{kInfinity, 0, 0, 1}, 0, 1}, {{-kInfinity, 0, 0, 1}, 0, 1},
+      {{1e10, 0, 0, 1}, 0, 1},   {{1.0, kNan, 0, 1}, 0, 1},    {{1.0, 1e8, 0, 1}, 0, 1},
+      {{1.0, 0, kNan, 1}, 0, 1}, {{1.0, 0, 1e9, 1}, 0, 1},     {{1.0, 0, 0, kNan}, 0, 1},
+      {{1.0, 0, 0, -1.0}, 0, 1}, {AxisTarget{}, 0, 1},         {{1.0, 0, 0, 1}, 20'001, -1},
+      {{1.0, 0, 0, 1}, -1, -1}};
+  for (const Row& row : rows) {
+    BusRig rig(2);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.cycle();
+    rig.follows = false;
+    rig.targets[0].position_rad = 1.5;
+    rig.targets[1] = row.target;
+    rig.targets_age_us = row.age_us;
+    rig.run_ms(50);
+    EXPECT_TRUE(rig.has(FaultCause::kTargetRefused, row.axis)) << row.target.position_rad;
+    for (const ScriptedDrive& drive : rig.drives) {
+      EXPECT_EQ(drive.target(), 1000);
+      EXPECT_EQ(drive.control_word(), 0x0F);
+    }
+  }
+}
+
+// The largest targets that fit pass; the torque limit never exceeds the axis' own.
+TEST(Cia402Faults, ExtremeTargetsThatFit) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.cycle();
+  rig.targets[0] = {2147483.647, 0, 0, kInfinity};
+  rig.run_ms(20);
+  EXPECT_EQ(rig.drives[0].target(), 2147483647);
+  EXPECT_EQ(rig.drives[0].max_torque(), 1500);
+  rig.targets[0] = {-2147483.648, 0, 0, 0.0199};
+  rig.run_ms(20);
+  EXPECT_EQ(rig.drives[0].target(), INT32_MIN);
+  EXPECT_EQ(rig.drives[0].max_torque(), 0);
+  EXPECT_TRUE(rig.bus->faults().empty()) << rig.fault_names();
+}
+
+// A fault that stays is told once; a recorder keeps what was said and sent.
+TEST(Cia402Faults, EachFaultOnceAndRecorded) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  for (int i = 0; i < 100; ++i) {
+    rig.line.put(from_hex("081#1186210000000000"));
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.bus->faults().size(), 1U);
+  std::ostringstream events;
+  rig.recorder.write_events(events);
+  EXPECT_NE(events.str().find("phase enabled"), std::string::npos);
+  EXPECT_NE(events.str().find("fault axis 0 emergency 8611h"), std::string::npos);
+  std::ostringstream frames;
+  rig.recorder.write_candump(frames, "can0");
+  EXPECT_NE(frames.str().find(" can0 081#1186210000000000\n"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace can
