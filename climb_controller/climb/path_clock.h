@@ -16,7 +16,7 @@ class PathClock {
   void restart() { *this = PathClock(); }
 
   /// One cycle on `path` (anything with JointSample at(double) const). stop = slow down; otherwise
-  /// speed up again to rate 1. Joints keep |acceleration| within the limits.
+  /// speed up again to rate 1. Joints keep |acceleration| within the limits (to 3 %).
   template <typename Path>
   void advance(double dt_s, bool stop, const Path& path, const LegLimits& limits) {
     if (!(dt_s > 0.0)) return;
