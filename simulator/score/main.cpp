@@ -101,6 +101,23 @@ bool read_log(const std::string& path, Scorer& scorer, Score& counts) {
   return true;
 }
 
+/// One line every five seconds, so that a long run is seen to go on.
+class Progress {
+ public:
+  void tell(std::int64_t passed_us, const Scorer& scorer) {
+    if (passed_us < next_us_) return;
+    next_us_ += kPeriodUs;
+    const Score score = scorer.result();
+    std::fprintf(stderr, "%4.0f s: %d frames, %d rungs trusted, %d bars besides\n",
+                 static_cast<double>(passed_us) * 1e-6, score.frames, score.rungs_confirmed,
+                 score.rungs_candidates);
+  }
+
+ private:
+  static constexpr std::int64_t kPeriodUs = 5'000'000;
+  std::int64_t next_us_ = kPeriodUs;
+};
+
 void listen(const Arguments& arguments, Scorer& scorer, Score& counts) {
   constexpr std::size_t kCapacity = 64;
   runtime::Bus bus(arguments.url);
@@ -116,7 +133,9 @@ void listen(const Arguments& arguments, Scorer& scorer, Score& counts) {
     const auto passed_us = static_cast<double>(monotonic_us() - start_us);
     return stop_requested != 0 || (arguments.seconds && passed_us >= *arguments.seconds * 1e6);
   };
+  Progress progress;
   while (!over()) {
+    progress.tell(monotonic_us() - start_us, scorer);
     pollfd readable{bus.file_descriptor(), POLLIN, 0};
     poll(&readable, 1, 50);
     bus.drain();
