@@ -26,7 +26,7 @@ const Detections& BarDetector::detect(const NodeCloud& cloud) {
   if (ladder.found()) measure_ladder(cloud, bars, ladder);
   for (int i = 0; i < static_cast<int>(bars.rails.size()); ++i) {
     if (found_.is_ladder && (i == ladder.left || i == ladder.right)) continue;
-    found_.rails.push_back(measurement_.measure_rail(cloud, nodes_, bars, bars.rails[i]));
+    found_.rails.push_back(measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i]));
   }
   measure_others(cloud, bars);
   return found_;
@@ -34,12 +34,13 @@ const Detections& BarDetector::detect(const NodeCloud& cloud) {
 
 void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
                                  const LadderHypothesis& ladder) {
-  const MeasuredRail left = measurement_.measure_rail(cloud, nodes_, bars, bars.rails[ladder.left]);
+  const MeasuredRail left =
+      measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[ladder.left]);
   const MeasuredRail right =
-      measurement_.measure_rail(cloud, nodes_, bars, bars.rails[ladder.right]);
+      measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[ladder.right]);
   found_.rails.assign({left, right});
   for (const Joint& joint : ladder.joints) {
-    auto bar = measurement_.measure(cloud, nodes_, bars, joint.bar, {&left, &right});
+    auto bar = measurement_.measure({cloud, nodes_, bars}, joint.bar, {&left, &right});
     if (!bar) continue;
     bar->on_ladder = true;
     found_.bars.push_back(*bar);
@@ -118,7 +119,7 @@ void BarDetector::keep_one_per_level() {
 void BarDetector::measure_others(const NodeCloud& cloud, const BarSet& bars) {
   for (int i = 0; i < static_cast<int>(bars.rungs.size()); ++i) {
     if (used_[i] || static_cast<int>(found_.bars.size()) >= params_.max_bars) continue;
-    const auto bar = measurement_.measure(cloud, nodes_, bars, i, {});
+    const auto bar = measurement_.measure({cloud, nodes_, bars}, i, {});
     if (bar) found_.bars.push_back(*bar);
   }
 }

@@ -26,6 +26,7 @@ struct BarMeasurement::Fit {
   Eigen::Vector3d height = Eigen::Vector3d::UnitZ();
   double from_m = 0.0;
   double to_m = 0.0;
+  MeasuredBar out;
 };
 
 namespace {
@@ -51,65 +52,64 @@ PrincipalAxis direction_within_heads(const std::array<MomentSum, kNumHeads>& hea
 
 }  // namespace
 
-std::optional<MeasuredBar> BarMeasurement::measure(const NodeCloud& cloud, const BarNodes& nodes,
-                                                   const BarSet& bars, int bar_index,
+std::optional<MeasuredBar> BarMeasurement::measure(const BarFrame& frame, int bar_index,
                                                    const Between& rails) const {
-  const Bar& bar = bars.rungs[bar_index];
+  const Bar& bar = frame.bars.rungs[bar_index];
   Fit fit;
-  MeasuredBar out;
+  MeasuredBar& out = fit.out;
   out.bar = bar_index;
-  if (!refit(cloud, nodes, bars, bar, rails, fit)) return std::nullopt;
+  if (!refit(frame, bar, rails, fit)) return std::nullopt;
   const Eigen::Vector3d ray = unit(fit.axis.origin_m - bar.eye_m, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d& d = fit.axis.direction;
   fit.depth = unit(ray - ray.dot(d) * d, Eigen::Vector3d::UnitZ().cross(d));
   fit.height = d.cross(fit.depth);
-  find_ends(nodes, bars, bar, rails, fit, out);
+  find_ends(frame, bar, rails, fit);
   if (!out.reaches_end0 && !out.reaches_end1) return std::nullopt;
   if (fit.to_m - fit.from_m < params_.measure.stub_margin_m) return std::nullopt;
   out.weight = fit.sum.weight;
-  out.deep = weight_behind(nodes, fit) / fit.sum.weight;
-  find_radius(cloud, bar, fit, out);
-  find_sag(nodes, bars, bar, fit, out);
+  out.deep = weight_behind(frame.nodes, fit) / fit.sum.weight;
+  find_radius(frame, bar, fit);
+  find_sag(frame, bar, fit);
   if (rails.left != nullptr) out.tilt_sin = std::abs(d.dot(rails.left->axis.direction));
-  mark_stretches(nodes, bars, bar, rails, fit, out);
+  mark_stretches(frame, bar, rails, fit);
   return out;
 }
 
-MeasuredRail BarMeasurement::measure_rail(const NodeCloud& cloud, const BarNodes& nodes,
-                                          const BarSet& bars, const Bar& rail) const {
+MeasuredRail BarMeasurement::measure_rail(const BarFrame& frame, const Bar& rail) const {
   MeasuredRail out{rail.axis, rail.from_m, rail.to_m, params_.measure.rail_half_width_m};
   // Visible half width from the spread across the view, away from where rungs are joined.
   MomentSum sum;
-  for (const int k : bars.members_of(rail)) {
-    const bool joined = std::any_of(bars.rungs.begin(), bars.rungs.end(), [&](const Bar& rung) {
-      return rung.axis.distance(nodes.position_m(k)) < params_.test.on_rung_m;
-    });
-    if (!joined) sum.add(nodes[k].sum);
+  for (const int k : frame.bars.members_of(rail)) {
+    const bool joined =
+        std::any_of(frame.bars.rungs.begin(), frame.bars.rungs.end(), [&](const Bar& rung) {
+          return rung.axis.distance(frame.nodes.position_m(k)) < params_.test.on_rung_m;
+        });
+    if (!joined) sum.add(frame.nodes[k].sum);
   }
   if (sum.weight < params_.measure.min_weight) return out;
   const Eigen::Vector3d view = rail.axis.origin_m - rail.eye_m;
   const Eigen::Vector3d side = unit(view.cross(rail.axis.direction), Eigen::Vector3d::UnitY());
   const double range_m = std::sqrt(view.squaredNorm());
   const double variance_m2 = std::max(0.0, side.dot(sum.covariance() * side));
-  const double half_m = std::sqrt(3.0 * variance_m2) - 0.5 * range_m * cloud.pixel_pitch_rad;
+  const double half_m = std::sqrt(3.0 * variance_m2) - 0.5 * range_m * frame.cloud.pixel_pitch_rad;
   if (half_m > params_.measure.rail_width_switch_m) out.half_width_m = half_m;
   return out;
 }
 
-bool BarMeasurement::refit(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
-                           const Bar& bar, const Between& rails, Fit& fit) const {
+bool BarMeasurement::refit(const BarFrame& frame, const Bar& bar, const Between& rails,
+                           Fit& fit) const {
   const MeasureParams& p = params_.measure;
   double from_m = -std::numeric_limits<double>::max();
   double to_m = std::numeric_limits<double>::max();
   if (rails.left != nullptr) from_m = inner_face_m(bar.axis, *rails.left, 1.0) + p.joint_trim_m;
   if (rails.right != nullptr) to_m = inner_face_m(bar.axis, *rails.right, -1.0) - p.joint_trim_m;
   std::array<MomentSum, kNumHeads> heads;
-  for (const int k : bars.members_of(bar)) {
-    const double t = bar.axis.along(nodes.position_m(k));
+  for (const int k : frame.bars.members_of(bar)) {
+    const double t = bar.axis.along(frame.nodes.position_m(k));
     if (t < from_m || t > to_m) continue;
-    fit.sum.add(nodes[k].sum);
-    for (int i = 0; i < nodes[k].num_moments; ++i) {
-      const HeadMoment& m = cloud.moments[nodes[k].first_moment + i];
+    fit.sum.add(frame.nodes[k].sum);
+    for (int i = 0; i < frame.nodes[k].num_moments; ++i) {
+      const HeadMoment& m = frame.cloud.moments[frame.nodes[k].first_moment + i];
       if (m.weight > 0.0F && m.mean_m.allFinite()) heads[m.head].add(to_sum(m));
     }
   }
@@ -125,13 +125,13 @@ bool BarMeasurement::refit(const NodeCloud& cloud, const BarNodes& nodes, const 
   return true;
 }
 
-void BarMeasurement::find_ends(const BarNodes& nodes, const BarSet& bars, const Bar& bar,
-                               const Between& rails, Fit& fit, MeasuredBar& out) const {
+void BarMeasurement::find_ends(const BarFrame& frame, const Bar& bar, const Between& rails,
+                               Fit& fit) const {
   const MeasureParams& p = params_.measure;
   double seen_from_m = std::numeric_limits<double>::max();
   double seen_to_m = -seen_from_m;
-  for (const int k : bars.members_of(bar)) {
-    const double t = fit.axis.along(nodes.position_m(k));
+  for (const int k : frame.bars.members_of(bar)) {
+    const double t = fit.axis.along(frame.nodes.position_m(k));
     seen_from_m = std::min(seen_from_m, t);
     seen_to_m = std::max(seen_to_m, t);
   }
@@ -139,21 +139,20 @@ void BarMeasurement::find_ends(const BarNodes& nodes, const BarSet& bars, const 
   fit.to_m = seen_to_m;
   if (rails.left != nullptr) {
     fit.from_m = inner_face_m(fit.axis, *rails.left, 1.0);
-    out.reaches_end0 = seen_from_m - fit.from_m <= p.stub_gap_m;
-    if (!out.reaches_end0) fit.from_m = seen_from_m - p.stub_margin_m;
+    fit.out.reaches_end0 = seen_from_m - fit.from_m <= p.stub_gap_m;
+    if (!fit.out.reaches_end0) fit.from_m = seen_from_m - p.stub_margin_m;
   }
   if (rails.right != nullptr) {
     fit.to_m = inner_face_m(fit.axis, *rails.right, -1.0);
-    out.reaches_end1 = fit.to_m - seen_to_m <= p.stub_gap_m;
-    if (!out.reaches_end1) fit.to_m = seen_to_m + p.stub_margin_m;
+    fit.out.reaches_end1 = fit.to_m - seen_to_m <= p.stub_gap_m;
+    if (!fit.out.reaches_end1) fit.to_m = seen_to_m + p.stub_margin_m;
   }
 }
 
-void BarMeasurement::find_radius(const NodeCloud& cloud, const Bar& bar, Fit& fit,
-                                 MeasuredBar& out) const {
+void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const {
   const MeasureParams& p = params_.measure;
   const double range_m = std::sqrt((fit.axis.origin_m - bar.eye_m).squaredNorm());
-  const double half_pixel_m = 0.5 * range_m * cloud.pixel_pitch_rad;
+  const double half_pixel_m = 0.5 * range_m * frame.cloud.pixel_pitch_rad;
   const double variance_m2 = std::max(0.0, fit.height.dot(fit.sum.covariance() * fit.height));
   const double estimate_m = std::sqrt(3.0 * variance_m2) + half_pixel_m;
   const double radius_m = estimate_m < p.radius_switch_m ? p.prior_radius_m : estimate_m;
@@ -161,30 +160,29 @@ void BarMeasurement::find_radius(const NodeCloud& cloud, const Bar& bar, Fit& fi
   constexpr double kLeastVisible = 0.3;
   const double visible_m = std::clamp(radius_m - half_pixel_m, kLeastVisible * radius_m, radius_m);
   const Eigen::Vector3d push_back = mean_chord_depth_m(radius_m, visible_m) * fit.depth;
-  out.radius_m = estimate_m;
-  out.end0_m = fit.axis.at(fit.from_m) + push_back;
-  out.end1_m = fit.axis.at(fit.to_m) + push_back;
+  fit.out.radius_m = estimate_m;
+  fit.out.end0_m = fit.axis.at(fit.from_m) + push_back;
+  fit.out.end1_m = fit.axis.at(fit.to_m) + push_back;
 }
 
-void BarMeasurement::find_sag(const BarNodes& nodes, const BarSet& bars, const Bar& bar,
-                              const Fit& fit, MeasuredBar& out) const {
+void BarMeasurement::find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const {
   constexpr double kMargin = 0.07;  // of the length, at both ends
   constexpr double kMinWeight = 3.0;
   std::array<double, 3> weight{}, height_m{};
   const double length_m = fit.to_m - fit.from_m;
-  for (const int k : bars.members_of(bar)) {
-    const Eigen::Vector3d w = nodes.position_m(k) - fit.axis.origin_m;
+  for (const int k : frame.bars.members_of(bar)) {
+    const Eigen::Vector3d w = frame.nodes.position_m(k) - fit.axis.origin_m;
     const double u = (w.dot(fit.axis.direction) - fit.from_m) / length_m;
     if (u < kMargin || u > 1.0 - kMargin) continue;
     const int third = u < 0.33 ? 0 : (u < 0.67 ? 1 : 2);
-    weight[third] += nodes.weight(k);
-    height_m[third] += nodes.weight(k) * w.dot(fit.height);
+    weight[third] += frame.nodes.weight(k);
+    height_m[third] += frame.nodes.weight(k) * w.dot(fit.height);
   }
   if (*std::min_element(weight.begin(), weight.end()) <= kMinWeight) return;
   for (int i = 0; i < 3; ++i) height_m[i] /= weight[i];
-  out.sag_m = std::abs(height_m[1] - 0.5 * (height_m[0] + height_m[2]));
+  fit.out.sag_m = std::abs(height_m[1] - 0.5 * (height_m[0] + height_m[2]));
   // The thirds' middles are (1 - 2 margin) / 3 of the length apart.
-  out.bend_tan = 2.0 * out.sag_m / (length_m * (1.0 - 2.0 * kMargin) / 3.0);
+  fit.out.bend_tan = 2.0 * fit.out.sag_m / (length_m * (1.0 - 2.0 * kMargin) / 3.0);
 }
 
 double BarMeasurement::weight_behind(const BarNodes& nodes, const Fit& fit) const {
@@ -208,26 +206,26 @@ double BarMeasurement::weight_behind(const BarNodes& nodes, const Fit& fit) cons
   return weight;
 }
 
-void BarMeasurement::mark_stretches(const BarNodes& nodes, const BarSet& bars, const Bar& bar,
-                                    const Between& rails, const Fit& fit, MeasuredBar& out) const {
+void BarMeasurement::mark_stretches(const BarFrame& frame, const Bar& bar, const Between& rails,
+                                    Fit& fit) const {
   const AffordanceParams& p = params_.affordance;
   const Eigen::Vector3d& d = fit.axis.direction;
   const double length_m = fit.to_m - fit.from_m;
-  for (const int k : bars.members_of(bar)) {
+  for (const int k : frame.bars.members_of(bar)) {
     // A node's points are spread evenly over so much on either side of its mean.
-    const Eigen::Matrix3d covariance = nodes[k].sum.covariance();
+    const Eigen::Matrix3d covariance = frame.nodes[k].sum.covariance();
     const double reach_m = std::sqrt(3.0 * std::max(0.0, d.dot(covariance * d))) + p.seen_reach_m;
-    const double t = fit.axis.along(nodes.position_m(k)) - fit.from_m;
-    mark(out.seen, t - reach_m, t + reach_m, length_m);
-    ++out.num_inliers;
+    const double t = fit.axis.along(frame.nodes.position_m(k)) - fit.from_m;
+    mark(fit.out.seen, t - reach_m, t + reach_m, length_m);
+    ++fit.out.num_inliers;
   }
   const double own_m = bar.wide ? params_.bar.wide_half_height_m : params_.bar.narrow_half_height_m;
   const double rise_m = std::abs(d.z()) * std::max(-fit.from_m, fit.to_m) + p.outlier_reach_m;
   const double z_m = fit.axis.origin_m.z();
-  const BarNodes::Range range = nodes.between(z_m - rise_m, z_m + rise_m);
+  const BarNodes::Range range = frame.nodes.between(z_m - rise_m, z_m + rise_m);
   for (int k = range.begin; k < range.end; ++k) {
-    if (nodes.weight(k) < p.outlier_min_weight) continue;
-    const Eigen::Vector3d& position = nodes.position_m(k);
+    if (frame.nodes.weight(k) < p.outlier_min_weight) continue;
+    const Eigen::Vector3d& position = frame.nodes.position_m(k);
     const double t = fit.axis.along(position) - fit.from_m;
     if (t < 0.0 || t > length_m) continue;
     const double across_m = fit.axis.distance(position);
@@ -236,8 +234,8 @@ void BarMeasurement::mark_stretches(const BarNodes& nodes, const BarSet& bars, c
       return rail != nullptr && rail->axis.distance(position) < own_m;
     };
     if (on_rail(rails.left) || on_rail(rails.right)) continue;
-    mark(out.attached, t - p.clearance_m, t + p.clearance_m, length_m);
-    ++out.num_outliers;
+    mark(fit.out.attached, t - p.clearance_m, t + p.clearance_m, length_m);
+    ++fit.out.num_outliers;
   }
 }
 

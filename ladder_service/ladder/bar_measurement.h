@@ -18,28 +18,30 @@ struct Between {
   const MeasuredRail* right = nullptr;
 };
 
+/// What one frame gave so far.
+struct BarFrame {
+  const NodeCloud& cloud;
+  const BarNodes& nodes;
+  const BarSet& bars;
+};
+
 class BarMeasurement {
  public:
   explicit BarMeasurement(const LadderParams& params) : params_(params) {}
 
   /// Nothing when too few points remain or it touches neither rail.
-  std::optional<MeasuredBar> measure(const NodeCloud& cloud, const BarNodes& nodes,
-                                     const BarSet& bars, int bar_index, const Between& rails) const;
-  MeasuredRail measure_rail(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
-                            const Bar& rail) const;
+  std::optional<MeasuredBar> measure(const BarFrame& frame, int bar_index,
+                                     const Between& rails) const;
+  MeasuredRail measure_rail(const BarFrame& frame, const Bar& rail) const;
 
  private:
   struct Fit;
-  bool refit(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars, const Bar& bar,
-             const Between& rails, Fit& fit) const;
-  void find_ends(const BarNodes& nodes, const BarSet& bars, const Bar& bar, const Between& rails,
-                 Fit& fit, MeasuredBar& out) const;
-  void find_radius(const NodeCloud& cloud, const Bar& bar, Fit& fit, MeasuredBar& out) const;
-  void find_sag(const BarNodes& nodes, const BarSet& bars, const Bar& bar, const Fit& fit,
-                MeasuredBar& out) const;
+  bool refit(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
+  void find_ends(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
+  void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const;
+  void find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const;
   double weight_behind(const BarNodes& nodes, const Fit& fit) const;
-  void mark_stretches(const BarNodes& nodes, const BarSet& bars, const Bar& bar,
-                      const Between& rails, const Fit& fit, MeasuredBar& out) const;
+  void mark_stretches(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
 
   LadderParams params_;
 };
