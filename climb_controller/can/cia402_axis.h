@@ -49,7 +49,6 @@ class Cia402Axis {
   // -----------------------------------------------------------------------------
   void set_goal(cia402::Goal goal);
   void set_fault_reset(bool resetting) { is_resetting_ = resetting; }
-  bool is_resetting() const { return is_resetting_; }
 
   /// False: not finite or not representable. Nothing changes before accept_target().
   bool offer_target(const AxisTarget& target);

@@ -47,7 +47,11 @@ void Cia402Bus::begin_phase() {
       for (Cia402Axis& axis : axes_) axis.begin_configuration(now_us_);
       break;
     case BusPhase::kRearming:
-      for (Cia402Axis& axis : axes_) axis.forget(now_us_);
+      faults_.clear();  // what the drives said while the bus only listened is about the past
+      for (Cia402Axis& axis : axes_) {
+        axis.forget(now_us_);
+        axis.set_fault_reset(true);
+      }
       break;
     case BusPhase::kEnabling:
       set_goal(Goal::kEnabled);
@@ -146,28 +150,23 @@ void Cia402Bus::advance_starting() {
 }
 
 void Cia402Bus::advance_rearming() {
-  bool all_sound = true;
-  bool all_configured = true;
-  for (Cia402Axis& axis : axes_) {
-    all_configured = all_configured && axis.is_configured();
-    const DriveState state = axis.state();
-    const bool failed = state == DriveState::kFault || state == DriveState::kFaultReactionActive;
-    axis.set_fault_reset(failed);
-    all_sound = all_sound && axis.is_running() && !failed;
-  }
-  if (!all_configured) return enter(BusPhase::kIdle);
-  if (all_sound) return enter(BusPhase::kReady);
-  if (!is_late()) return;
+  const auto is_failed = [](const Cia402Axis& axis) {
+    return axis.state() == DriveState::kFault || axis.state() == DriveState::kFaultReactionActive;
+  };
+  const bool all_configured = std::all_of(
+      axes_.begin(), axes_.end(), [](const Cia402Axis& axis) { return axis.is_configured(); });
+  const bool all_sound = std::all_of(axes_.begin(), axes_.end(), [&](const Cia402Axis& axis) {
+    return axis.is_running() && !is_failed(axis);
+  });
+  if (all_configured && !all_sound && !is_late()) return;
   for (int i = 0; i < num_axes(); ++i) {
     Cia402Axis& axis = axes_[static_cast<std::size_t>(i)];
-    if (!axis.is_running()) {
-      line_.raise(FaultCause::kSilent, i, 0);
-    } else if (axis.is_resetting()) {
-      line_.raise(FaultCause::kEnableTimeout, i, axis.status_word());
-    }
     axis.set_fault_reset(false);
+    if (!axis.is_configured()) continue;
+    if (!axis.is_running()) line_.raise(FaultCause::kSilent, i, 0);
+    if (is_failed(axis)) line_.raise(FaultCause::kEnableTimeout, i, axis.status_word());
   }
-  enter(BusPhase::kReady);
+  enter(all_configured ? BusPhase::kReady : BusPhase::kIdle);
 }
 
 void Cia402Bus::hold() {

@@ -302,22 +302,61 @@ TEST(Cia402Bus, EnableTimeoutHoldsTheOthers) {
   EXPECT_FALSE(rig.bus->enable());
 }
 
-// rearm() resets a drive fault by a rising edge and is ready again; motion needs enable().
+// rearm() resets a drive fault by a rising edge and is ready again; motion needs enable(). With
+// and without polls between the cycles.
 TEST(Cia402Bus, RearmResetsFaultsByEdge) {
+  for (const bool polls : {true, false}) {
+    BusRig rig(2);
+    rig.polls_between = polls;
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.drives[0].fail();
+    rig.run_ms(50);
+    EXPECT_TRUE(rig.has(FaultCause::kLeftOperationEnabled, 0));
+    EXPECT_EQ(rig.drives[0].num_fault_resets(), 0);
+    ASSERT_TRUE(rig.bus->rearm());
+    ASSERT_TRUE(rig.run_until(BusPhase::kReady, 1000)) << rig.fault_names();
+    EXPECT_EQ(rig.drives[0].num_fault_resets(), 1);
+    EXPECT_TRUE(rig.bus->faults().empty()) << rig.fault_names();
+    EXPECT_EQ(rig.drives[0].status_word(), 0x0240);
+    EXPECT_EQ(rig.drives[1].status_word() & 0x6F, 0x27);  // never let go
+    ASSERT_TRUE(rig.bus->enable());
+    EXPECT_TRUE(rig.run_until(BusPhase::kEnabled, 500)) << rig.fault_names();
+  }
+}
+
+// A bus fault, after which the drives report a fault of their own: one rearm() mends both.
+TEST(Cia402Bus, RearmAfterBusFaultWithFailedDrives) {
   BusRig rig(2);
   ASSERT_TRUE(rig.bring_to_enabled());
-  rig.drives[0].fail();
-  rig.run_ms(50);
-  EXPECT_TRUE(rig.has(FaultCause::kLeftOperationEnabled, 0));
-  EXPECT_EQ(rig.drives[0].num_fault_resets(), 0);
+  CanFrame bus_off;
+  bus_off.id = 0x40;
+  bus_off.error = true;
+  bus_off.dlc = 8;
+  rig.line.put(bus_off);
+  rig.cycle();
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kFaulted);
+  for (ScriptedDrive& drive : rig.drives) drive.fail();
+  rig.line.put(from_hex("081#3081110000000000"));
+  rig.run_ms(500);
   ASSERT_TRUE(rig.bus->rearm());
-  ASSERT_TRUE(rig.run_until(BusPhase::kReady, 1000)) << rig.fault_names();
-  EXPECT_EQ(rig.drives[0].num_fault_resets(), 1);
+  rig.line.put(from_hex("081#3081110000000000"));
+  rig.run_ms(100);
+  ASSERT_TRUE(rig.run_until(BusPhase::kReady, 2000)) << rig.fault_names();
   EXPECT_TRUE(rig.bus->faults().empty()) << rig.fault_names();
-  EXPECT_EQ(rig.drives[0].status_word(), 0x0240);
-  EXPECT_EQ(rig.drives[1].status_word() & 0x6F, 0x27);  // never let go
-  ASSERT_TRUE(rig.bus->enable());
-  EXPECT_TRUE(rig.run_until(BusPhase::kEnabled, 500)) << rig.fault_names();
+  EXPECT_TRUE(rig.bus->enable());
+}
+
+// A fault that cannot be reset is told again; the drive is not enabled.
+TEST(Cia402Bus, FaultThatStays) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.drives[0].fail();
+  rig.drives[0].ignores_control_word = true;
+  rig.run_ms(50);
+  ASSERT_TRUE(rig.bus->rearm());
+  ASSERT_TRUE(rig.run_until(BusPhase::kReady, 3000));
+  EXPECT_TRUE(rig.has(FaultCause::kEnableTimeout, 0));
+  EXPECT_FALSE(rig.bus->enable());
 }
 
 // Requests that make no sense in a phase are refused and change nothing.
