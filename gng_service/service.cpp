@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "gng_service/service.h"
 
+#include <string>
+
 #include "ddgng/ddgng.h"
 #include "gng_service/config.h"
 #include "gng_service/convert.h"
@@ -21,7 +23,8 @@ class GngService final : public runtime::Service {
   explicit GngService(runtime::ServiceContext context)
       : context_(context),
         clouds_(context.bus.newest(channels::kCloud)),
-        gng_(read_params(context.config)) {}
+        params_(read_params(context.config)),
+        gng_(params_) {}
 
   void step(const base::Now& now) noexcept override {
     const ladder_msgs::point_cloud_t* cloud = clouds_.take(now.utime_us);
@@ -29,6 +32,12 @@ class GngService final : public runtime::Service {
       if (now.monotonic_us - last_cloud_us_ > kSilentAfterUs) {
         context_.health.set_state(health_t::STATE_WAITING);
       }
+      return;
+    }
+    if (cloud->num_points > params_.max_points) {
+      context_.journal.warning("a cloud of " + std::to_string(cloud->num_points) +
+                               " points is not used: gng.max_points is " +
+                               std::to_string(params_.max_points));
       return;
     }
     last_cloud_us_ = now.monotonic_us;
@@ -51,6 +60,7 @@ class GngService final : public runtime::Service {
  private:
   runtime::ServiceContext context_;
   runtime::Mailbox<ladder_msgs::point_cloud_t>& clouds_;
+  ddgng::DdgngParams params_;
   ddgng::DynamicDensityGng gng_;
   runtime::RecordingWatch recording_;
   ladder_msgs::topology_t message_{};

@@ -165,7 +165,8 @@ namespace {
 HWY_EXPORT(NearestTwo);
 HWY_EXPORT(NearestTwoInCells);
 
-// Cells this many RMS second distances wide were fastest (docs/BENCHMARKS.md).
+// Cells this many RMS second distances wide: few nodes per block of cells, few linear fallbacks.
+// Not swept.
 constexpr float kSidePerSpacing = 2.6F;
 constexpr float kMinSide_m = 1e-3F;
 constexpr float kOccupancyPart = 0.25F;  // of the outside grid's side

@@ -142,6 +142,18 @@ TEST_F(GngService, SameInputSameOutput) {
   }
 }
 
+// A cloud larger than the configured bound is left out; the next one is used.
+TEST(GngServiceBound, TooLargeCloudIsLeftOut) {
+  support::ServiceHarness harness{gng_service::description(), {"gng.max_points=1000"}};
+  auto& topologies = harness.outside.queue(channels::kTopology, 8);
+  harness.outside.publish(channels::kCloud, wall_cloud(0, kStart, 1'001));
+  harness.step(kStart);
+  EXPECT_EQ(topologies.take(0), nullptr);
+  harness.outside.publish(channels::kCloud, wall_cloud(1, kStart + kPeriod, 1'000));
+  harness.step(kStart + kPeriod);
+  EXPECT_NE(topologies.take(0), nullptr);
+}
+
 // The paper's literal mode runs on the same door: two insertions a frame.
 TEST(GngServicePaper, TwoInsertionsPerFrame) {
   support::ServiceHarness harness{gng_service::description(), {"gng.mode=paper"}};
