@@ -172,7 +172,8 @@ void Drive::move_motor(std::int64_t now_us) {
     demand_ = demand_from_ + (demand_to_ - demand_from_) * share;
     const double feed_forward_rad_s =
         params_.sign * static_cast<double>(dictionary_.number(0x60B1)) / params_.counts_per_rad;
-    motor_.follow(angle_rad(demand_) - deflection_rad_, feed_forward_rad_s, limits, kStep_s);
+    // A servo is a spring about its demand: under load the joint bends away from it and stays so.
+    motor_.follow(angle_rad(demand_), feed_forward_rad_s, limits, kStep_s);
   } else if (has_torque(power_)) {
     const double deceleration =
         static_cast<double>(dictionary_.number(0x6085)) / params_.counts_per_rad;

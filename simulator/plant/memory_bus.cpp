@@ -68,6 +68,11 @@ void MemoryBus::deliver(const CarriedFrame& carried, std::int64_t due_us) {
   }
 }
 
+std::int64_t MemoryBus::next_due_us(int port) const {
+  const auto& inbox = ports_[static_cast<std::size_t>(port)].inbox;
+  return inbox.empty() ? INT64_MAX : inbox.front().due_us;
+}
+
 bool MemoryBus::receive(int port, std::int64_t now_us, CarriedFrame& received) {
   auto& inbox = ports_[static_cast<std::size_t>(port)].inbox;
   if (inbox.empty() || inbox.front().due_us > now_us) return false;

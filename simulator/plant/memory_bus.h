@@ -54,6 +54,9 @@ class MemoryBus {
   /// The next frame that reached this port by now; false when there is none.
   bool receive(int port, std::int64_t now_us, CarriedFrame& received);
 
+  /// When the next frame reaches this port; the largest number when none is on its way.
+  std::int64_t next_due_us(int port) const;
+
   PortFaults& faults(int port) { return ports_[static_cast<std::size_t>(port)].faults; }
 
   /// Stalled frames leave when the bus comes up again, unless purged.

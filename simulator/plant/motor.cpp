@@ -34,13 +34,15 @@ void Motor::step(double wanted_rad_s, const MotorLimits& limits, double dt_s) {
       std::min(params_.max_velocity_rad_s * speed_share, limits.velocity_rad_s);
   double wanted = std::clamp(wanted_rad_s, -max_velocity, max_velocity);
   if (reversed) wanted = -wanted;
+  if (wanted < 0.0 && position_rad_ <= lower_stop()) wanted = 0.0;  // leans on its stop
   const double max_change = params_.max_acceleration_rad_s2 * dt_s;
   const double change = std::clamp(wanted - velocity_rad_s_, -max_change, max_change);
   const double torque_limit = std::min(params_.peak_torque_Nm, limits.torque_Nm);
   const double asked_Nm = params_.inertia_kg_m2 * change / dt_s + load_Nm_;
   torque_Nm_ = std::clamp(asked_Nm, -torque_limit, torque_limit);
   saturated_ = torque_Nm_ != asked_Nm;
-  velocity_rad_s_ += (torque_Nm_ - load_Nm_) / params_.inertia_kg_m2 * dt_s;
+  // Unsaturated the change is exact, so that a ramp ends at exactly 0.
+  velocity_rad_s_ += saturated_ ? (torque_Nm_ - load_Nm_) / params_.inertia_kg_m2 * dt_s : change;
   velocity_rad_s_ =
       std::clamp(velocity_rad_s_, -params_.max_velocity_rad_s, params_.max_velocity_rad_s);
   move(dt_s);
@@ -60,10 +62,14 @@ void Motor::release(bool brake, double dt_s) {
   move(dt_s);
 }
 
+double Motor::lower_stop() const {
+  return std::max(params_.min_rad, lower_stop_rad_);
+}
+
 void Motor::move(double dt_s) {
   if (stuck) velocity_rad_s_ = 0.0;
   position_rad_ += velocity_rad_s_ * dt_s;
-  const double lower = std::max(params_.min_rad, lower_stop_rad_);
+  const double lower = lower_stop();
   if (position_rad_ < lower || position_rad_ > params_.max_rad) {
     position_rad_ = std::clamp(position_rad_, lower, params_.max_rad);
     velocity_rad_s_ = 0.0;

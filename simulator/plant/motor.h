@@ -52,6 +52,7 @@ class Motor {
  private:
   void step(double wanted_rad_s, const MotorLimits& limits, double dt_s);
   void move(double dt_s);
+  double lower_stop() const;
 
   MotorParams params_;
   double position_rad_;

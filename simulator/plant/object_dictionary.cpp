@@ -39,6 +39,10 @@ Object ranged(Object object, std::int64_t min, std::int64_t max) {
 }
 
 void add_communication(std::vector<Object>& list, std::uint32_t node) {
+  // Dummies of CiA 301, 7.4.7: fill bytes of a PDO that nobody uses.
+  list.push_back(mapped(0x0005, kU8, kRW, 0));
+  list.push_back(mapped(0x0006, kU16, kRW, 0));
+  list.push_back(mapped(0x0007, kU32, kRW, 0));
   list.push_back(plain(0x1000, 0, kU32, kR, 0x00020192));  // servo drive, CiA 402
   list.push_back(plain(0x1001, 0, kU8, kR, 0));
   list.push_back(ranged(plain(0x1003, 0, kU8, kRW, 0), 0, 0));

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the plant tells its observers, and what is done to it from outside.
+#include <algorithm>
+
+#include "simulator/plant/robot_plant.h"
+
+namespace simulator {
+namespace {
+
+constexpr double kGravity_m_s2 = 9.81;
+constexpr double kAccelerometerSigma_m_s2 = 0.02;
+constexpr double kGyroscopeSigma_rad_s = 0.002;
+
+}  // namespace
+
+PlantTruth RobotPlant::truth() const {
+  PlantTruth truth;
+  truth.time_us = now_us_;
+  truth.T_world_body = T_world_body_;
+  truth.docked = docked_;
+  truth.fallen = fallen_;
+  truth.lines = lines();
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const Claw& claw = claws_[static_cast<std::size_t>(leg)];
+    LegTruth& told = truth.legs[static_cast<std::size_t>(leg)];
+    told.holds = claw.holds();
+    told.bears = bears(leg);
+    told.touch = claw.touch();
+    told.rung_index = claw.holds() ? claw.rung_index() : -1;
+    told.p_world_foot_m =
+        T_world_body_ * foot_in_body(params_.geometry, leg, leg_angles(leg, true));
+    told.force_on_rung_N = force_on_rung_N_[static_cast<std::size_t>(leg)];
+    told.last_loss = claw.last_loss();
+    told.lost_us = claw.lost_us();
+  }
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    truth.joint_rad[index] = drive(axis).measured_rad();
+    truth.joint_rad_s[index] = drive(axis).motor().velocity_rad_s();
+    truth.power[index] = drive(axis).power_state();
+  }
+  const auto rungs = world_.rungs();
+  truth.num_broken_rungs = static_cast<int>(
+      std::count_if(rungs.begin(), rungs.end(), [](const Rung& rung) { return rung.broken; }));
+  return truth;
+}
+
+ImuReading RobotPlant::imu() {
+  ImuReading reading;
+  const bool falls = fallen_ && fall_m_s_ > 0.0;
+  if (!falls) {
+    reading.specific_force_m_s2 =
+        T_world_body_.linear().transpose() * Eigen::Vector3d(0.0, 0.0, kGravity_m_s2);
+  }
+  reading.angular_rate_rad_s = angular_rate_rad_s_;
+  for (int i = 0; i < 3; ++i) {
+    reading.specific_force_m_s2[i] += kAccelerometerSigma_m_s2 * noise_.gaussian();
+    reading.angular_rate_rad_s[i] += kGyroscopeSigma_rad_s * noise_.gaussian();
+  }
+  reading.q_world_body = Eigen::Quaterniond(T_world_body_.linear());
+  return reading;
+}
+
+void RobotPlant::set_docked(bool docked) {
+  if (docked && !docked_) T_world_dock_ = T_world_body_;
+  docked_ = docked;
+  weighed_legs_ = ~0U;
+}
+
+void RobotPlant::inject(int axis, std::uint16_t fault_code) {
+  drive(axis).raise_fault(fault_code, sent_);
+  flush(port(axis), now_us_);
+}
+
+void RobotPlant::warn(int axis, std::uint16_t code) {
+  drive(axis).raise_warning(code, sent_);
+  flush(port(axis), now_us_);
+}
+
+void RobotPlant::clear_warning(int axis) {
+  drive(axis).clear_warning(sent_);
+  flush(port(axis), now_us_);
+}
+
+void RobotPlant::reboot(int axis) {
+  drive(axis).reboot(now_us_);
+}
+
+void RobotPlant::drop_to_pre_operational(int axis) {
+  drive(axis).drop_to_pre_operational(sent_);
+  flush(port(axis), now_us_);
+}
+
+}  // namespace simulator
