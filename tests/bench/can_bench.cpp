@@ -21,8 +21,8 @@ class EchoLine : public can::Transport {
     namespace c = can::cia402;
     if (const auto sdo = c::decode_sdo_request(frame)) {
       const auto kind = sdo->write ? c::SdoResponse::Kind::kWritten : c::SdoResponse::Kind::kValue;
-      if (sdo->write) last_value_ = sdo->value;
-      const std::uint32_t value = sdo->object.index == 0x1000 ? 402 : last_value_;
+      if (sdo->write) last_values_[sdo->node] = sdo->value;
+      const std::uint32_t value = sdo->object.index == 0x1000 ? 402 : last_values_[sdo->node];
       if (sdo->object.index == 0x608F) {
         answer(encode(c::SdoResponse{sdo->node, sdo->object, c::SdoResponse::Kind::kAbort, 4,
                                      c::kAbortNoObject}));
@@ -74,7 +74,7 @@ class EchoLine : public can::Transport {
 
   std::vector<can::CanFrame> answers_;
   std::size_t next_ = 0;
-  std::uint32_t last_value_ = 0;
+  std::uint32_t last_values_[128] = {};
   std::uint16_t words_[128] = {};
 };
 
