@@ -1,0 +1,4 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What decides and guards, beside what computes motion.
+set(climb_control_sources
+    safety.cpp)

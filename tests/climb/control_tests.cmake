@@ -1,0 +1,3 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What decides and guards: gate, failsafe table, state machines, grasp confirmation, controller.
+ladder_test(climb_safety_test SOURCES safety_test.cpp LINK climb LABELS unit)
