@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one solve, one distribution of forces and one choice of a grasp cost (docs/BENCHMARKS.md).
+// What one solve, one line of a foot and one distribution of forces cost (docs/BENCHMARKS.md).
 #include <array>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
-#include "climb/grasp_choice.h"
+#include "climb/foot_line.h"
+#include "climb/support.h"
 #include "tests/climb/robot_poses.h"
 
 namespace {
@@ -55,6 +56,18 @@ void BM_climb_gravity_feed_forward(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_climb_gravity_feed_forward);
+
+/// Made once per approach, at a change of state: 65 points checked and their speeds.
+void BM_climb_foot_line(benchmark::State& state) {
+  const climb::LegKinematics kinematics{climb::RobotParams()};
+  const Eigen::Vector3d from(0.3, 0.15, -0.23);
+  const Eigen::Vector3d to(0.3, 0.15, -0.28);
+  for (auto _ : state) {
+    const climb::FootLine line(kinematics, climb::kFrontLeft, from, to, {0.05, 1.0});
+    benchmark::DoNotOptimize(line.duration_s());
+  }
+}
+BENCHMARK(BM_climb_foot_line);
 
 /// The dear case: least forces beyond the limits, every iteration used.
 void BM_climb_bounded_support(benchmark::State& state) {
