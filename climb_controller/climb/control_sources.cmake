@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What decides and guards, beside what computes motion.
 set(climb_control_sources
+    controller_state.cpp
+    failsafe.cpp
+    limb_state.cpp
     safety.cpp)
