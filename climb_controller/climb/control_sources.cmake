@@ -3,5 +3,6 @@
 set(climb_control_sources
     controller_state.cpp
     failsafe.cpp
+    grasp_confirmation.cpp
     limb_state.cpp
     safety.cpp)
