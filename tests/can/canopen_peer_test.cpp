@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The CiA 402 bus in real time against a slave that this project did not write: npm's canopen
+// behind a unix: line. Skipped, by name and with the reason, where Node or its packages are
+// missing.
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "can/can_socket.h"
+#include "can/cia402_bus.h"
+#include "tests/support/child_process.h"
+
+namespace can {
+namespace {
+
+using std::chrono::milliseconds;
+
+const std::string kFolder = std::string(LADDER_SOURCE_DIR) + "/scripts/canopen_peer";
+
+std::int64_t now_us() {
+  timespec time{};
+  ::clock_gettime(CLOCK_MONOTONIC, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000;
+}
+
+/// "" or why the slave cannot run here.
+std::string why_not() {
+  support::ChildProcess prepare(kFolder + "/prepare", {});
+  const auto status = prepare.wait(std::chrono::seconds(60));
+  if (status == 0) return "";
+  return "SKIPPED canopen_peer_test: " + prepare.output();
+}
+
+class CanopenPeer : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string reason = why_not();
+    if (!reason.empty()) GTEST_SKIP() << reason;
+    char folder[] = "/tmp/canopen_peer_XXXXXX";
+    path_ = std::string(::mkdtemp(folder)) + "/line";
+  }
+
+  void TearDown() override {
+    bus.reset();
+    bridge_.reset();
+    std::remove(path_.c_str());
+    std::remove(path_.substr(0, path_.rfind('/')).c_str());
+  }
+
+  void start(const Cia402Params& params, const std::vector<std::string>& missing = {}) {
+    std::vector<std::string> arguments = {kFolder + "/bridge.py", "unix:" + path_, "node",
+                                          kFolder + "/slave.js", "1"};
+    arguments.insert(arguments.end(), missing.begin(), missing.end());
+    bridge_ = std::make_unique<support::ChildProcess>("/usr/bin/python3", arguments);
+    socket_ = std::make_unique<CanSocket>(CanSocketParams{"unix:" + path_});
+    for (int i = 0; i < 100 && !socket_->open().empty(); ++i) {
+      std::this_thread::sleep_for(milliseconds(50));
+    }
+    ASSERT_GE(socket_->fd(), 0) << bridge_->output();
+    bus = std::make_unique<Cia402Bus>(params, *socket_, &recorder);
+    run_ms(500);  // the slave's interpreter starts
+  }
+
+  void run_ms(int duration_ms) {
+    const std::int64_t end_us = now_us() + duration_ms * 1000;
+    while (now_us() < end_us) {
+      const std::int64_t time_us = now_us();
+      bus->exchange(time_us, {time_us, {&target, 1}}, {&feedback, 1});
+      while (now_us() < time_us + 10'000) {
+        std::this_thread::sleep_for(milliseconds(1));
+        bus->poll(now_us());
+      }
+    }
+  }
+
+  bool run_until(BusPhase phase, int limit_ms) {
+    for (int i = 0; i < limit_ms / 20 && bus->phase() != phase; ++i) run_ms(20);
+    return bus->phase() == phase;
+  }
+
+  /// What went wrong, with the log's end.
+  std::string story() const {
+    std::ostringstream text;
+    for (const ObjectIssue& issue : bus->issues()) text << describe(issue) << '\n';
+    for (const Fault& fault : bus->faults()) {
+      text << name(fault.cause) << ' ' << fault.axis << ' ' << fault.detail << '\n';
+    }
+    recorder.write_events(text);
+    return text.str() + bridge_->output();
+  }
+
+  /// One axis; patient, since an interpreter answers on a loaded machine.
+  static Cia402Params patient_params() {
+    Cia402Params params;
+    AxisConfig axis;
+    axis.node_id = 1;
+    axis.counts_per_rad = 1000.0;
+    params.axes = {axis};
+    params.max_missed_cycles = 20;
+    params.drive_lost_ms = 1000;
+    params.line.max_stalled_cycles = 20;
+    return params;
+  }
+
+  FlightRecorder recorder;
+  std::unique_ptr<Cia402Bus> bus;
+  AxisTarget target;
+  AxisFeedback feedback;
+
+ private:
+  std::string path_;
+  std::unique_ptr<support::ChildProcess> bridge_;
+  std::unique_ptr<CanSocket> socket_;
+};
+
+// NMT, heartbeat, SDO write and read-back, RPDO, SYNC, TPDO: from power-up to a target and back.
+TEST_F(CanopenPeer, WholeCycle) {
+  start(patient_params());
+  ASSERT_TRUE(bus->configure());
+  ASSERT_TRUE(run_until(BusPhase::kReady, 8000)) << story();
+  EXPECT_TRUE(bus->issues().empty()) << story();
+  EXPECT_TRUE(bus->capabilities().hold_on_loss);
+  ASSERT_TRUE(bus->enable());
+  target.position_rad = 1.0;  // where it stands
+  ASSERT_TRUE(run_until(BusPhase::kEnabled, 3000)) << story();
+  EXPECT_EQ(feedback.position_rad, 1.0);
+  target.position_rad = 1.5;
+  run_ms(300);
+  EXPECT_EQ(feedback.position_rad, 1.5) << story();
+  EXPECT_EQ(feedback.torque_Nm, 2.0);
+  EXPECT_EQ(feedback.state, DriveState::kOperationEnabled);
+  ASSERT_TRUE(bus->stop(StopKind::kQuickStop));
+  run_ms(200);
+  EXPECT_EQ(feedback.state, DriveState::kQuickStopActive) << story();
+  ASSERT_TRUE(bus->disable());
+  ASSERT_TRUE(run_until(BusPhase::kReady, 3000)) << story();
+  EXPECT_EQ(feedback.state, DriveState::kSwitchOnDisabled);
+  EXPECT_TRUE(bus->faults().empty()) << story();
+}
+
+// The slave's own heartbeat consumer (1016h) notices that the master is gone, and it holds.
+TEST_F(CanopenPeer, HoldsWhenTheMasterIsGone) {
+  start(patient_params());
+  bus->configure();
+  ASSERT_TRUE(run_until(BusPhase::kReady, 8000)) << story();
+  target.position_rad = 1.0;
+  bus->enable();
+  ASSERT_TRUE(run_until(BusPhase::kEnabled, 3000)) << story();
+  run_ms(100);
+  std::this_thread::sleep_for(milliseconds(600));  // nobody feeds the heartbeat
+  run_ms(100);
+  EXPECT_NE(feedback.state, DriveState::kSwitchOnDisabled);
+  bool noticed = false;
+  for (const Fault& fault : bus->faults()) {
+    noticed = noticed || fault.cause == FaultCause::kLeftOperationEnabled;
+  }
+  EXPECT_TRUE(noticed) << story();
+}
+
+// A slave without 6007h comes up without the capability, the object named.
+TEST_F(CanopenPeer, MissingAbortConnectionIsNamed) {
+  start(patient_params(), {"6007"});
+  bus->configure();
+  ASSERT_TRUE(run_until(BusPhase::kReady, 8000)) << story();
+  EXPECT_FALSE(bus->capabilities().hold_on_loss);
+  ASSERT_EQ(bus->issues().size(), 1U);
+  EXPECT_EQ(describe(bus->issues()[0]),
+            "axis 0: 6007h:0 abort connection option code: object does not exist (abort "
+            "06020000h)");
+}
+
+// A slave without torque objects: refused where torque is configured, accepted where it is not.
+TEST_F(CanopenPeer, MissingTorqueObjects) {
+  Cia402Params params = patient_params();
+  start(params, {"6007", "6072", "6077"});
+  bus->configure();
+  ASSERT_TRUE(run_until(BusPhase::kConfiguring, 2000));
+  ASSERT_TRUE(run_until(BusPhase::kIdle, 8000)) << story();
+  bool named = false;
+  for (const ObjectIssue& issue : bus->issues()) named = named || issue.index == 0x6072;
+  EXPECT_TRUE(named) << story();
+  EXPECT_FALSE(bus->enable());
+}
+
+// The same slave with 6-byte frames comes up.
+TEST_F(CanopenPeer, WithoutTorqueFrames) {
+  Cia402Params params = patient_params();
+  params.axes[0].has_torque = false;
+  start(params, {"6007", "6072", "6077"});
+  bus->configure();
+  ASSERT_TRUE(run_until(BusPhase::kReady, 8000)) << story();
+  EXPECT_FALSE(bus->capabilities().torque_limit);
+  target.position_rad = 1.0;
+  bus->enable();
+  EXPECT_TRUE(run_until(BusPhase::kEnabled, 3000)) << story();
+}
+
+}  // namespace
+}  // namespace can
