@@ -116,7 +116,15 @@ void Cia402Bus::exchange(std::int64_t now_us, const Targets& targets,
     return;
   }
   send_heartbeat_if_older(params_.master_heartbeat_us - params_.cycle_us / 2);
-  send_cycle(targets);
+  const bool was_away = now_us_ - cycle_us_ > params_.max_missed_cycles * params_.cycle_us;
+  cycle_us_ = now_us_;
+  // After a pause the drives may have stopped by themselves; an enabling word from before would
+  // silently undo that. So first only SYNC: what they say now decides.
+  if (was_away) {
+    was_sync_sent_ = line_.send(cia402::encode_sync());
+  } else {
+    send_cycle(targets);
+  }
   line_.end_cycle();
   if (line_.is_faulted()) advance();
 }

@@ -81,6 +81,7 @@ class Cia402Bus : public ServoBus {
   bool is_speaking_ = false;    ///< no other master was heard; the heartbeat runs
   bool was_sync_sent_ = false;  ///< in the last cycle
   std::int64_t heartbeat_us_ = 0;
+  std::int64_t cycle_us_ = 0;  ///< time of the last cycle that was sent
 };
 
 }  // namespace can

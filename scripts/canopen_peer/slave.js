@@ -35,7 +35,7 @@ addObject(0x1006, UNSIGNED32);
 eds.addSdoServerParameter(node, 0x580 + node, 0x600 + node);
 eds.setSyncCobId(0x80);
 addObject(0x1017, UNSIGNED16, 100);
-addRecord(0x1016, [UNSIGNED32]);
+eds.addHeartbeatConsumer(0x7F, 150);
 addRecord(0x1029, [UNSIGNED8]);
 for (const index of [0x6007, 0x605A, 0x605E]) addObject(index, INTEGER16);
 for (const index of [0x6065, 0x607F, 0x6080, 0x60C5, 0x6085]) addObject(index, UNSIGNED32);
@@ -86,12 +86,17 @@ device.nmt.on('timeout', () => {
 device.on('message', ({ id, data }) => {
   process.stdout.write(`${id.toString(16).toUpperCase().padStart(3, '0')}#${Buffer.from(data || []).toString('hex').toUpperCase()}\n`);
 });
+let isCommanded = false;
 const lines = readline.createInterface({ input: process.stdin });
 lines.on('line', (line) => {
   const [id, bytes] = line.trim().split('#');
   const data = Buffer.from(bytes, 'hex');
   const cobId = parseInt(id, 16);
-  if (cobId === 0x80) follow(); // what the RPDOs of this cycle brought becomes valid
+  if (cobId === 0x200 + node) isCommanded = true;
+  if (cobId === 0x80 && isCommanded) { // what the RPDO of this cycle brought becomes valid
+    isCommanded = false;
+    follow();
+  }
   device.receive({ id: cobId, data, len: data.length });
 });
 lines.on('close', () => process.exit(0));

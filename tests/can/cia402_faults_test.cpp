@@ -355,6 +355,26 @@ TEST(Cia402Faults, RearmListensAgain) {
   EXPECT_TRUE(rig.run_until(BusPhase::kReady, 500));
 }
 
+// The controller was away and the drives stopped by themselves: the first frames afterwards only
+// ask, so that the stop is seen and not undone.
+TEST(Cia402Faults, PauseOfTheControllerIsNotUndone) {
+  for (const bool polls : {true, false}) {
+    BusRig rig(2);
+    rig.polls_between = polls;
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.run_ms(50);
+    rig.time_us += 200'000;
+    for (ScriptedDrive& drive : rig.drives) drive.set_status_word(0x0207);
+    rig.run_ms(100);
+    for (const ScriptedDrive& drive : rig.drives) {
+      EXPECT_EQ(drive.status_word(), 0x0207);
+      EXPECT_EQ(drive.control_word(), 0x0B);
+    }
+    EXPECT_TRUE(rig.has(FaultCause::kLeftOperationEnabled, 0));
+    EXPECT_TRUE(rig.has(FaultCause::kLeftOperationEnabled, 1));
+  }
+}
+
 // Targets that are no numbers, do not fit or are old are refused whole: all axes keep the last.
 TEST(Cia402Faults, RefusedTargets) {
   struct Row {
