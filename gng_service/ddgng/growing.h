@@ -60,6 +60,8 @@ class Growing {
     std::int64_t edges_dropped = 0;  ///< given up because a node was full
   };
   const Counts& counts() const { return counts_; }
+  /// For comparison: the same winners, found by looking at every node.
+  void search_linearly() { search_.search_linearly(); }
   const WinnerSearch::Counts& search_counts() const { return search_.counts(); }
 
  private:

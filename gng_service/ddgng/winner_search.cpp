@@ -242,6 +242,10 @@ void WinnerSearch::clear() {
 
 Winners WinnerSearch::nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m) {
   ++counts_.searches;
+  if (linear_only_) {
+    ++counts_.linear;
+    return nearest_two_linear(graph, signal_m);
+  }
   const auto& [outside, inside] = grids_;
   CellList list;
   const float inside_m2 =
@@ -276,6 +280,7 @@ float WinnerSearch::fitting_side_m(int area) const {
 
 void WinnerSearch::learn_spacing(const Graph& graph, const std::uint8_t* inside_of,
                                  const Winners& winners) {
+  if (linear_only_) return;
   const int area = inside_of[winners.first];
   spacing_m2_[area] += (winners.second_m2 - spacing_m2_[area]) * (1.0F / 64.0F);
   if (--until_check_[area] <= 0) {

@@ -33,12 +33,18 @@ class WinnerSearch {
   explicit WinnerSearch(int num_slots);
 
   void clear();
+  /// For comparison: from now on every answer comes from all slots, and no cells are kept.
+  void search_linearly() { linear_only_ = true; }
   void add(int slot, bool inside, const Eigen::Vector3f& position_m) {
+    if (linear_only_) return;
     grids_[inside ? 1 : 0].add(slot, position_m);
     if (inside) inside_nodes_.mark(position_m);
   }
-  void remove(int slot, bool inside) { grids_[inside ? 1 : 0].remove(slot); }
+  void remove(int slot, bool inside) {
+    if (!linear_only_) grids_[inside ? 1 : 0].remove(slot);
+  }
   void move(int slot, bool inside, const Eigen::Vector3f& position_m) {
+    if (linear_only_) return;
     grids_[inside ? 1 : 0].move(slot, position_m);
     if (inside) inside_nodes_.mark(position_m);
   }
@@ -65,6 +71,7 @@ class WinnerSearch {
   std::array<float, 2> spacing_m2_{};
   std::array<int, 2> until_check_{};
   int until_mark_ = 0;
+  bool linear_only_ = false;
   Counts counts_;
 };
 
