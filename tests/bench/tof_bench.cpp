@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "base/rng.h"
+#include "tests/bench/frame_times.h"
 #include "tof/fusion.h"
 
 namespace {
@@ -54,7 +55,9 @@ void quad_frame(benchmark::State& state, tof::DepthKind kind, double wrap_range_
   std::int64_t utime_us = 1'000'000;
   std::int64_t seq = 0;
   std::size_t num_points = 0;
+  bench::FrameTimes times;
   for (auto _ : state) {
+    times.start();
     const tof::ImuSample imu{utime_us, {0.0, 0.0, 9.81}, {0.0, 0.0, 0.0}};
     benchmark::DoNotOptimize(fusion.add_imu(imu));
     for (int head = 0; head < tof::kNumHeads; ++head) {
@@ -64,9 +67,11 @@ void quad_frame(benchmark::State& state, tof::DepthKind kind, double wrap_range_
       const auto result = fusion.add_frame(frame);
       if (!result.clouds.empty()) num_points = result.clouds.front().size();
     }
+    times.stop();
     utime_us += kPeriod_us;
     ++seq;
   }
+  times.report(state);
   state.counters["points"] = static_cast<double>(num_points);
   state.counters["pixels"] = tof::kNumHeads * kNumPixels;
 }
@@ -86,13 +91,16 @@ void filter_alone(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK_CAPTURE(quad_frame, z, tof::DepthKind::kZ, 0.0)
+    ->Name("stage/tof")
     ->Arg(60000)
     ->Arg(400000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(quad_frame, radial, tof::DepthKind::kRadial, 0.0)
+    ->Name("stage/tof_radial")
     ->Arg(60000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(quad_frame, radial_wrap, tof::DepthKind::kRadial, 4.5)
+    ->Name("stage/tof_wrap")
     ->Arg(60000)
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK(filter_alone)->Unit(benchmark::kMicrosecond);
+BENCHMARK(filter_alone)->Name("stage/tof_filter")->Unit(benchmark::kMicrosecond);
