@@ -31,14 +31,14 @@ def print_report(path):
         rates, stages = rates_and_stages(json.load(file)["benchmarks"])
     if rates:
         print("\nsignals per second    ddgng / linear")
-    for name, rate in rates.items():
+    for name, rate in sorted(rates.items(), key=lambda item: int(item[0].split("/")[1])):
         kind, nodes = name.split("/")
         linear = rates.get(f"linear/{nodes}")
         if kind == "ddgng" and linear:
             print(f"{nodes:>8} nodes {rate:12.0f}   x {rate / linear:.2f}")
     if stages:
         print("\nstage                       median ms    p95 ms")
-    for name, (median_ms, p95_ms) in stages.items():
+    for name, (median_ms, p95_ms) in sorted(stages.items()):
         print(f"{name:27} {median_ms:9.3f} {p95_ms:9.3f}")
 
 
