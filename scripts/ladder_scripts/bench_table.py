@@ -47,7 +47,7 @@ def read_turns(lines):
     turns = collections.defaultdict(list)
     header = None
     for line in lines:
-        yardstick = re.search(r" N=(\d+) .*sig/s=(\d+)", line)
+        yardstick = re.search(r" N=(\d+) .*? sig/s=(\d+)", line)
         if yardstick:
             turns["yardstick", int(yardstick[1])].append(float(yardstick[2]))
         elif line.startswith("name,"):
