@@ -2,7 +2,13 @@
 # What decides and guards, beside what computes motion.
 set(climb_control_sources
     controller_state.cpp
+    body_shift.cpp
+    controller.cpp
+    controller_output.cpp
     failsafe.cpp
+    fault_watch.cpp
+    step_planner.cpp
     grasp_confirmation.cpp
+    limb_cycle.cpp
     limb_state.cpp
     safety.cpp)

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The climbing controller: one step() per cycle from readings to targets that have passed the gate.
+// Pure: time comes in, nothing is allocated after construction. States: controller_state.h; which
+// fault does what: failsafe.h; what one limb does: limb_cycle.h; where to: step_planner.h.
+#pragma once
+
+#include "climb/body_shift.h"
+#include "climb/controller_io.h"
+#include "climb/fault_watch.h"
+#include "climb/step_planner.h"
+
+namespace climb {
+
+struct ControllerParams {
+  ClimbParams climb;
+  LimbParams limb;
+  ConfirmationParams confirmation;
+  GateParams gate;
+  WatchParams watch;
+  std::uint64_t session_id = 0;  ///< random per run, not 0: commands must echo it
+  bool feed_forward = true;      ///< torque that bears the weight
+  bool on_ladder = true;         ///< fewer than three grasps outside the dock = fall alarm
+  double selftest_s = 0.2;
+  double enable_timeout_s = 5.0;
+  double dock_timeout_s = 120.0;  ///< for four claws to grasp in the dock
+};
+
+/// "" or the violated relation, naming the field.
+std::string check(const ControllerParams& params);
+
+class Controller {
+ public:
+  /// `params` pass check().
+  explicit Controller(const ControllerParams& params);
+
+  void step(const ControllerInput& input, ControllerOutput& output);
+
+  ControllerState state() const { return state_; }
+  const LimbCycle& limb(Leg leg) const { return limbs_[leg]; }
+
+ private:
+  CommandVerdict take_command(const OperatorCommand& command);
+  bool obey(Order order);
+  bool take(ControllerEvent event);
+  void react(const Action& action);
+  FaultFlags faults_of(const ControllerInput& input);
+  void work(const ControllerInput& input);
+  void boot(const ControllerInput& input);
+  void work_arming(const ControllerInput& input);
+  void work_climbing(const ControllerInput& input);
+  void start_following(const ControllerInput& input);
+  void move(const ControllerInput& input);
+  bool must_stop(Leg leg) const;
+  bool is_stance_firm() const;
+  LimbInput limb_input(const ControllerInput& input, Leg leg) const;
+  LadderView ladder_of(const ControllerInput& input) const;
+  RobotNow robot_now(const ControllerInput& input) const;
+  void update_pose(const ControllerInput& input);
+  void watch_target(const ControllerInput& input);
+  void send(const ControllerInput& input, ControllerOutput& output);
+  void add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted) const;
+  DriveRequest drive_request(const ControllerInput& input) const;
+  void report(ControllerOutput& output) const;
+  const LimbCycle* moving_limb() const;
+
+  ControllerParams params_;
+  PerAxis<AxisLimits> limits_;
+  SafetyGate gate_;
+  FaultWatch watch_;
+  StepPlanner planner_;
+  BodyShift shift_;
+  Odometry odometry_;
+  Support support_;
+  std::array<LimbCycle, kNumLegs> limbs_;
+
+  ControllerState state_ = ControllerState::kBoot;
+  Action action_;
+  FaultFlags faults_ = 0;
+  Fault reason_ = Fault::kNone;
+  std::int64_t last_seq_ = -1;
+  double in_state_s_ = 0.0;
+  bool was_docked_ =
+      false;  ///< it hangs on its claws: four were loaded since arming, or three still
+  bool upwards_ = true;
+  bool shifted_ = false;
+  bool finishing_ = false;  ///< the step in the air, then HOLD
+  bool following_ = false;  ///< targets are sent
+  bool unsafe_ = false;     ///< the gate refused our own command
+  PlannedStep plan_;
+  GateVerdict verdict_;
+};
+
+}  // namespace climb

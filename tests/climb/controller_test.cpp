@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The controller as a whole on a kinematic stand: start, arm in the dock, climb, and stops.
+#include "climb/controller.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/climb/ladder_stand.h"
+#include "tests/climb/robot_poses.h"
+
+namespace climb {
+namespace {
+
+using S = ControllerState;
+
+constexpr std::uint64_t kSession = 0x5e551011;
+
+ControllerParams params() {
+  ControllerParams params;
+  params.session_id = kSession;
+  return params;
+}
+
+class ControllerTest : public testing::Test {
+ protected:
+  void order(Order what, std::uint64_t session = kSession) {
+    stand_.input.command = {what, session, ++seq_};
+    cycle();
+  }
+  void cycle() {
+    const PerAxis<AxisCommand> before = output_.axes;
+    const bool sent_before = output_.send;
+    controller_.step(stand_.input, output_);
+    int num_moving = 0;
+    for (const Leg leg : kLegs) num_moving += controller_.limb(leg).moves() ? 1 : 0;
+    EXPECT_LE(num_moving, 1);
+    if (output_.send) check_sent(before, sent_before);
+    stand_.step(output_);
+  }
+  /// Invariants 2 and 6 on everything that is sent.
+  void check_sent(const PerAxis<AxisCommand>& before, bool sent_before) {
+    const PerAxis<AxisLimits> limits = axis_limits(params().climb.robot);
+    for (int axis = 0; axis < kNumAxes; ++axis) {
+      const double last_rad =
+          sent_before ? before[axis].position_rad : stand_.input.axes[axis].position_rad;
+      const double step_rad = std::abs(output_.axes[axis].position_rad - last_rad);
+      ASSERT_TRUE(step_rad <= limits[axis].max_velocity_rad_s * 0.01 * 1.0001);
+    }
+  }
+  bool reach(S state, double within_s) {
+    for (int i = 0; i < static_cast<int>(within_s * 100.0); ++i) {
+      if (output_.state == state) return true;
+      cycle();
+    }
+    return output_.state == state;
+  }
+  bool arm() {
+    if (!reach(S::kDisarmed, 1.0)) return false;
+    order(Order::kArm);
+    return reach(S::kHold, 60.0);
+  }
+  bool reach_limb(Leg leg, LimbState state, double within_s) {
+    for (int i = 0; i < static_cast<int>(within_s * 100.0); ++i) {
+      if (output_.limbs[leg] == state) return true;
+      cycle();
+    }
+    return false;
+  }
+  std::string where() const {
+    std::string text = name(output_.state);
+    text += std::string(" reason ") + name(output_.reason) + " gate " + name(output_.gate.reason) +
+            " axis " + std::to_string(output_.gate.axis) + " refusal " + name(output_.refusal) +
+            " burden " + name(output_.burden);
+    for (const Leg leg : kLegs) {
+      const GraspWitness witness = controller_.limb(leg).last_witness();
+      text += witness.touch ? " T" : " -";
+      text += witness.jaw ? "J" : "-";
+      text += witness.torque ? "F" : "-";
+      text += witness.pull ? "P" : "-";
+    }
+    for (const Leg leg : kLegs) text += std::string(" ") + name(output_.limbs[leg]);
+    return text;
+  }
+
+  climb_tests::LadderStand stand_{params().climb};
+  Controller controller_{params()};
+  ControllerOutput output_;
+  std::int64_t seq_ = 0;
+};
+
+// Nothing is sent before arming, and the parameters as they come are sound.
+TEST_F(ControllerTest, BootsToDisarmedAndSendsNothing) {
+  EXPECT_EQ(check(params()), "");
+  for (int i = 0; i < 100; ++i) {
+    cycle();
+    ASSERT_FALSE(output_.send);
+    ASSERT_EQ(output_.drives, DriveRequest::kNone);
+  }
+  EXPECT_EQ(output_.state, S::kDisarmed) << where();
+}
+
+// Only this run's session arms, and a command that came before is not taken twice.
+TEST_F(ControllerTest, ArmsForThisSessionOnly) {
+  ASSERT_TRUE(reach(S::kDisarmed, 1.0));
+  order(Order::kArm, kSession + 1);
+  EXPECT_EQ(output_.command, CommandVerdict::kWrongSession);
+  order(Order::kArm, 0);
+  EXPECT_EQ(output_.command, CommandVerdict::kWrongSession);
+  EXPECT_EQ(output_.state, S::kDisarmed);
+  order(Order::kClimb);
+  EXPECT_EQ(output_.command, CommandVerdict::kNotNow);
+  stand_.input.command = {Order::kArm, kSession, seq_};
+  cycle();
+  EXPECT_EQ(output_.command, CommandVerdict::kReplayed);
+  order(Order::kArm);
+  EXPECT_EQ(output_.state, S::kArming);
+}
+
+// In the dock all four claws grasp and are verified, one after the other; then HOLD.
+TEST_F(ControllerTest, GraspsInTheDock) {
+  ASSERT_TRUE(arm()) << where();
+  for (const Leg leg : kLegs) {
+    EXPECT_TRUE(stand_.held(leg));
+    EXPECT_EQ(output_.limbs[leg], LimbState::kLoaded);
+    EXPECT_EQ(output_.rung_ids[leg], is_front(leg) ? 3 : 1);
+    EXPECT_TRUE(controller_.limb(leg).last_witness().all());
+  }
+}
+
+// From the dock to the top rung of nine: every claw one rung after another, and HOLD at the top.
+TEST_F(ControllerTest, ClimbsToTheTop) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach(S::kHold, 400.0)) << where();
+  EXPECT_TRUE(output_.at_top) << where();
+  EXPECT_EQ(output_.rung_ids[kFrontLeft], 9);
+  EXPECT_EQ(output_.rung_ids[kFrontRight], 9);
+  EXPECT_NEAR(stand_.body_height_m(), 1.8, 0.1);
+}
+
+// The E-stop stops in every stage, sends nothing more, and leaves only by reset when clear; then
+// nothing moves until armed again, and the claws that held are still held.
+TEST_F(ControllerTest, StopsAndRearms) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0)) << where();
+  stand_.input.estop_clear = false;
+  cycle();
+  EXPECT_EQ(output_.state, S::kEstop);
+  EXPECT_EQ(output_.reason, Fault::kEstop);
+  EXPECT_FALSE(output_.send);
+  EXPECT_EQ(output_.drives, DriveRequest::kQuickStop);
+  order(Order::kReset);
+  EXPECT_EQ(output_.command, CommandVerdict::kNotNow);
+  stand_.input.estop_clear = true;
+  for (int i = 0; i < 100; ++i) cycle();
+  EXPECT_EQ(output_.state, S::kEstop);
+  order(Order::kReset);
+  EXPECT_EQ(output_.state, S::kDisarmed);
+  order(Order::kArm);
+  ASSERT_TRUE(reach(S::kHold, 30.0)) << where();
+  for (const Leg leg : kLegs) EXPECT_TRUE(stand_.held(leg)) << where();
+}
+
+// Every fault that latches while climbing does so from each stage of a step, with its own reason;
+// the foot stands within 0.3 s and no other claw opens.
+TEST_F(ControllerTest, HoldsOnEveryFaultInEveryStage) {
+  for (const LimbState stage :
+       {LimbState::kUnloading, LimbState::kReleasing, LimbState::kRetracting, LimbState::kTransit,
+        LimbState::kApproach, LimbState::kClosing, LimbState::kVerify, LimbState::kLoading}) {
+    climb_tests::LadderStand stand(params().climb);
+    Controller controller(params());
+    std::swap(stand_, stand);
+    std::swap(controller_, controller);
+    output_ = ControllerOutput();
+    ASSERT_TRUE(arm()) << where();
+    order(Order::kClimb);
+    ASSERT_TRUE(reach_limb(kRearRight, stage, 20.0)) << where();
+    const Controller at_stage = controller_;
+    const ControllerOutput output_at_stage = output_;
+    const climb_tests::LadderStand stand_at_stage = stand_;
+    for (const FailsafeRow& row : failsafe_table()) {
+      if (!failsafe(flag(row.fault), S::kClimbing).latched) continue;
+      controller_ = at_stage;
+      output_ = output_at_stage;
+      stand_ = stand_at_stage;
+      stand_.input.faults = flag(row.fault);
+      cycle();
+      EXPECT_EQ(output_.reason, row.fault) << name(stage);
+      EXPECT_TRUE(is_latched(output_.state)) << row.name;
+      EXPECT_EQ(output_.send, !row.silent && output_.state == S::kFaultHold) << row.name;
+      for (int i = 0; i < 30; ++i) cycle();
+      const PerAxis<AxisCommand> stood = output_.axes;
+      for (int i = 0; i < 20; ++i) cycle();
+      for (int axis = 0; axis < kNumAxes; ++axis) {
+        if (axis % kNumAxesPerLeg == kJaw) continue;
+        EXPECT_EQ(output_.axes[axis].position_rad, stood[axis].position_rad);
+      }
+      for (const Leg leg : kLegs) EXPECT_TRUE(leg == kRearRight || stand_.held(leg));
+      EXPECT_EQ(output_.reason, row.fault);
+    }
+  }
+}
+
+// Without perception it stops before the reach and goes on by itself when it sees again.
+TEST_F(ControllerTest, WaitsForPerception) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0));
+  stand_.sees = false;
+  ASSERT_TRUE(reach(S::kProtectiveHold, 0.32)) << where();
+  EXPECT_EQ(output_.reason, Fault::kPerceptionSilent);
+  stand_.sees = true;
+  ASSERT_TRUE(reach(S::kClimbing, 0.05)) << where();
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kLoaded, 20.0)) << where();
+}
+
+// A target that disappears before commit: back to the rung it came from, then HOLD.
+TEST_F(ControllerTest, ReturnsWhenTheTargetIsWithdrawn) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0));
+  stand_.rungs[1].trusted = false;
+  cycle();
+  cycle();
+  EXPECT_EQ(output_.limbs[kRearRight], LimbState::kAbortReturn) << where();
+  ASSERT_TRUE(reach(S::kHold, 30.0)) << where();
+  EXPECT_EQ(output_.limbs[kRearRight], LimbState::kLoaded);
+  EXPECT_EQ(output_.rung_ids[kRearRight], 1);
+}
+
+// A rung that breaks under a resting claw: the loss is latched and told, no other claw opens.
+TEST_F(ControllerTest, LatchesALostStance) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0));
+  stand_.break_rung(1);  // holds the rear left claw
+  ASSERT_TRUE(reach(S::kFaultHold, 0.06)) << where();
+  EXPECT_EQ(output_.limbs[kRearLeft], LimbState::kSupportLost);
+  EXPECT_TRUE(stand_.held(kFrontLeft) && stand_.held(kFrontRight));
+}
+
+}  // namespace
+}  // namespace climb
