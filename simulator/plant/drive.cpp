@@ -85,7 +85,9 @@ void Drive::apply_control_word(std::vector<BusFrame>& sent) {
   inputs.fault_reset_edge =
       (word & kFaultResetBit) != 0 && (last_control_word_ & kFaultResetBit) == 0;
   inputs.fault_cause_gone = !motor_.stuck;
-  inputs.stays_in_quick_stop = dictionary_.number(0x605A) >= 5;
+  // Transition 16 goes by level, not edge: a master that comes back still saying 0x0F moves at
+  // once.
+  inputs.leaves_quick_stop = dictionary_.number(0x605A) >= 5 && !master_lost_;
   last_control_word_ = word;
   PowerState next = next_state(power_, inputs);
   if (!torque_permitted_ && has_torque(next)) next = PowerState::kSwitchOnDisabled;

@@ -25,7 +25,7 @@ Command command_of(std::uint16_t word) {
   return (word & 0x8) == 0 ? Command::kSwitchOn : Command::kEnableOperation;
 }
 
-PowerState from_powered(PowerState state, Command command, bool stays) {
+PowerState from_powered(PowerState state, Command command, bool may_resume) {
   switch (command) {
     case Command::kDisableVoltage:
       return kSwitchOnDisabled;
@@ -38,7 +38,7 @@ PowerState from_powered(PowerState state, Command command, bool stays) {
     case Command::kSwitchOn:
       return state == kQuickStopActive ? state : kSwitchedOn;
     case Command::kEnableOperation:
-      return state == kQuickStopActive && !stays ? state : kOperationEnabled;
+      return state == kQuickStopActive && !may_resume ? state : kOperationEnabled;
     case Command::kNone:
       break;
   }
@@ -76,7 +76,7 @@ PowerState next_state(PowerState state, const ControlInputs& inputs) {
     case kQuickStopActive:
       break;
   }
-  return from_powered(state, command, inputs.stays_in_quick_stop);
+  return from_powered(state, command, inputs.leaves_quick_stop);
 }
 
 }  // namespace simulator

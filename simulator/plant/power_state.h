@@ -34,7 +34,7 @@ struct ControlInputs {
   std::uint16_t control_word = 0;
   bool fault_reset_edge = false;  ///< bit 7 was 0 and is 1
   bool fault_cause_gone = true;
-  bool stays_in_quick_stop = false;  ///< 605Ah is 5..8: transition 16 exists
+  bool leaves_quick_stop = false;  ///< transition 16 exists (605Ah is 5..8) and is allowed now
 };
 
 /// Transitions 2..12, 15 and 16 by control word.

@@ -76,6 +76,7 @@ class RobotPlant {
   const Drive& drive(int axis) const { return drives_[static_cast<std::size_t>(axis)]; }
   int port(int axis) const { return drive_ports_[static_cast<std::size_t>(axis)]; }
   const Claw& claw(int leg) const { return claws_[static_cast<std::size_t>(leg)]; }
+  bool has_force_nodes() const { return !force_nodes_.empty(); }
   ForceNode& force_node(int leg) { return force_nodes_[static_cast<std::size_t>(leg)]; }
   RungWorld& world() { return world_; }
   const Eigen::Isometry3d& T_world_body() const { return T_world_body_; }

@@ -80,6 +80,7 @@ struct DriveBench {
     write(0x6085, 0, static_cast<std::uint32_t>(20.0 * drive.params().counts_per_rad), 4);
     write(0x1016, 1, (0x7FU << 16) | 150U, 4);
     write(0x1017, 0, 100, 2);
+    write(0x1029, 1, 1, 1);
     nmt(0x01);
     for (const int word : {0x06, 0x07, 0x0F, 0x0F}) cycle(word, drive.measured_rad());
   }

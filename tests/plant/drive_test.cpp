@@ -191,6 +191,11 @@ TEST(DriveLoss, QuickStopAndHold) {
   bench.advance(1'000'000);
   EXPECT_EQ(bench.drive.power_state(), PowerState::kQuickStopActive);
   EXPECT_EQ(bench.drive.measured_rad(), where_rad);
+  // The hazard that the controller must know: back again and still saying 0x0F, it is enabled.
+  bench.master_alive = true;
+  bench.num_cycles = 0;
+  bench.cycle(0x0F, where_rad);
+  EXPECT_EQ(bench.drive.power_state(), PowerState::kOperationEnabled);
 }
 
 // A drive without 6007h does not stop: the reason to refuse it on a ladder.

@@ -46,6 +46,7 @@ struct RobotBench {
       write(axis, 0x6085, 0, static_cast<std::uint32_t>(20.0 * scale), 4);
       write(axis, 0x1016, 1, (0x7FU << 16) | 150U, 4);
       write(axis, 0x1017, 0, 100, 2);
+      write(axis, 0x1029, 1, 1, 1);
     }
     send(frame_of(0x000, {0x01, 0x00}));
     for (int axis = 0; axis < kNumAxes; ++axis) {

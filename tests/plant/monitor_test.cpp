@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The monitor notices each broken invariant, and is silent over a run that breaks none.
+#include "simulator/plant/monitor.h"
+
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "robot_bench.h"
+
+namespace simulator {
+namespace {
+
+/// Four claws on their rungs, watched in every millisecond.
+struct WatchedBench {
+  explicit WatchedBench(const PlantParams& params = gripping_params())
+      : bench(params), monitor(MonitorParams(params)) {}
+
+  void watch() {
+    for (const CarriedFrame& carried : bench.carried) monitor.on_frame(carried);
+    bench.carried.clear();
+    monitor.on_truth(bench.plant.truth());
+  }
+  void cycles(int num, int control_word = 0x0F) {
+    for (int i = 0; i < num; ++i) {
+      bench.cycle(control_word);
+      watch();
+    }
+  }
+  void start(bool armed = true) {
+    watch();
+    if (armed) monitor.on_session(bench.now_us, SessionEvent::kArmed);
+    bench.configure();
+    for (const int word : {0x06, 0x07, 0x0F}) cycles(1, word);
+    for (int leg = 0; leg < kNumLegs; ++leg) bench.move_jaw(leg, -0.6);
+    cycles(30);
+  }
+  std::set<int> broken() const {
+    std::set<int> invariants;
+    for (const Violation& violation : monitor.violations()) {
+      invariants.insert(violation.invariant);
+    }
+    return invariants;
+  }
+  std::string first() const {
+    return monitor.violations().empty() ? "" : describe(monitor.violations().front());
+  }
+
+  RobotBench bench;
+  Monitor monitor;
+};
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// One claw opens, moves away and back, and closes again: nothing to object to.
+TEST(Monitor, SilentOverAStep) {
+  WatchedBench run;
+  run.start();
+  const Eigen::Vector3d home = run.bench.plant.truth().legs[0].p_world_foot_m;
+  run.bench.move_jaw(0, 1.2);
+  run.cycles(40);
+  run.bench.move_foot(0, home + Eigen::Vector3d(-0.05, 0.0, 0.05));
+  run.cycles(60);
+  run.bench.move_foot(0, home);
+  run.cycles(60);
+  run.bench.move_jaw(0, -0.6);
+  run.cycles(60);
+  EXPECT_TRUE(run.bench.plant.truth().legs[0].bears);
+  EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+  EXPECT_GT(run.monitor.num_targets(), 1000);
+}
+
+// Two claws opened at once: the second one was not allowed (I3), and is lost unduly (I1).
+TEST(Monitor, SeesTwoClawsOpening) {
+  WatchedBench run;
+  run.start();
+  run.bench.move_jaw(0, 1.2);
+  run.bench.move_jaw(3, 1.2);
+  run.cycles(30);
+  EXPECT_THAT(run.broken(), ElementsAre(1, 3)) << run.first();
+}
+
+// A grasp that a breaking rung took away is no fault of the controller; opening another one a
+// second later is.
+TEST(Monitor, ExcusesThePlantOnlyForAWhile) {
+  PlantParams params = gripping_params();
+  params.start_rung = {2, 3, 0, 1};
+  params.body_height_m = 0.75;
+  WatchedBench run(params);
+  run.start();
+  run.bench.plant.world().rung(2).break_at_us = run.bench.now_us;
+  run.cycles(100);
+  EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+  run.bench.move_jaw(3, 1.2);
+  run.cycles(30);
+  EXPECT_THAT(run.broken(), ElementsAre(1, 3));
+}
+
+// Releasing the dock with nothing in the claws is a violation of I1.
+TEST(Monitor, SeesUndockingWithoutGrasps) {
+  WatchedBench run{PlantParams{}};
+  run.watch();
+  run.bench.plant.set_docked(false);
+  run.bench.advance(10'000);
+  run.watch();
+  EXPECT_THAT(run.broken(), ElementsAre(1)) << run.first();
+}
+
+// A target out of limits and a jump are seen (I2).
+TEST(Monitor, SeesLimitsAndJumps) {
+  WatchedBench run;
+  run.start();
+  run.bench.goal_rad[1] += 0.03;
+  run.bench.target_rad[1] += 0.03;
+  run.cycles(1);
+  EXPECT_THAT(run.broken(), ElementsAre(2)) << run.first();
+  WatchedBench far;
+  far.start();
+  far.bench.goal_rad[0] = 1.0;
+  far.cycles(70);
+  EXPECT_THAT(far.broken(), ElementsAre(2)) << far.first();
+}
+
+// Targets that run on after the E-stop's reaction time are seen (I4); targets that freeze are not.
+TEST(Monitor, SeesMotionAfterStop) {
+  for (const bool obeys : {false, true}) {
+    WatchedBench run;
+    run.start();
+    run.bench.move_jaw(0, 1.2);
+    run.cycles(30);
+    run.bench.goal_rad[1] += 1.5;
+    run.cycles(5);
+    run.bench.plant.set_wire_fault(kEstopN, WireFault::kStuckLow);
+    run.cycles(1);
+    if (obeys) run.bench.goal_rad = run.bench.target_rad;
+    run.cycles(40);
+    if (obeys) {
+      EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+    } else {
+      EXPECT_THAT(run.broken(), ElementsAre(4)) << run.first();
+      EXPECT_NEAR(
+          1e-3 * static_cast<double>(run.monitor.violations().front().time_us - run.bench.now_us),
+          -400.0 + 180.0, 30.0);
+    }
+  }
+}
+
+// Enabling before the operator armed is seen (I5), also after disarming.
+TEST(Monitor, SeesEnablingUnarmed) {
+  WatchedBench run;
+  run.start(false);
+  EXPECT_THAT(run.broken(), ElementsAre(5)) << run.first();
+  WatchedBench later;
+  later.start();
+  EXPECT_THAT(later.broken(), IsEmpty()) << later.first();
+  later.monitor.on_session(later.bench.now_us, SessionEvent::kDisarmed);
+  later.cycles(1);
+  EXPECT_THAT(later.broken(), ElementsAre(5));
+}
+
+// A first target three counts off what was measured is seen (I6), two counts are not.
+TEST(Monitor, SeesAFirstTargetElsewhere) {
+  for (const int off : {2, 3}) {
+    WatchedBench run;
+    run.watch();
+    run.monitor.on_session(run.bench.now_us, SessionEvent::kArmed);
+    run.bench.configure();
+    for (const int word : {0x06, 0x07}) run.cycles(1, word);
+    const double angle = off / 10430.0;
+    run.bench.target_rad[1] += angle;
+    run.bench.goal_rad[1] += angle;
+    run.cycles(1);
+    EXPECT_EQ(run.broken().count(6), off == 3 ? 1U : 0U) << run.first();
+  }
+}
+
+// A master that goes on sending after bus-off is seen (I7) until the operator resets.
+TEST(Monitor, SeesSendingOverABusFault) {
+  WatchedBench run;
+  run.start();
+  BusFrame bus_off;
+  bus_off.id = kBusOffError;
+  bus_off.length = 8;
+  run.monitor.on_frame({run.bench.now_us, run.bench.now_us, 0, bus_off});
+  run.bench.master_alive = false;
+  run.cycles(5);
+  EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+  run.bench.master_alive = true;
+  run.cycles(1);
+  EXPECT_EQ(run.broken().count(7), 1U);
+  const auto before = run.monitor.num_violations();
+  run.monitor.on_session(run.bench.now_us, SessionEvent::kReset);
+  run.cycles(1);
+  EXPECT_EQ(run.monitor.num_violations(), before);
+}
+
+// A stop without a reason, and one whose reason changes, are seen (I8).
+TEST(Monitor, SeesUnclearReasons) {
+  Monitor monitor{MonitorParams(PlantParams{})};
+  monitor.on_stop(1, 11);
+  monitor.on_stop(2, 11);
+  monitor.on_run(3);
+  monitor.on_stop(4, 13);
+  EXPECT_EQ(monitor.num_violations(), 0);
+  monitor.on_stop(5, 11);
+  monitor.on_run(6);
+  monitor.on_stop(7, 0);
+  EXPECT_EQ(monitor.num_violations(), 2);
+  EXPECT_EQ(monitor.violations().front().invariant, 8);
+}
+
+// Frames that waited in a stalled queue and leave late are seen (I9).
+TEST(Monitor, SeesStaleFrames) {
+  WatchedBench run;
+  run.start();
+  run.bench.bus.set_condition(BusCondition::kStalled, run.bench.now_us);
+  run.cycles(3);
+  EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+  run.bench.bus.set_condition(BusCondition::kUp, run.bench.now_us);
+  run.cycles(1);
+  EXPECT_EQ(run.broken().count(9), 1U);
+}
+
+}  // namespace
+}  // namespace simulator
