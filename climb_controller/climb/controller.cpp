@@ -82,6 +82,7 @@ FaultFlags Controller::faults_of(const ControllerInput& input) {
 }
 
 void Controller::react(const Action& action) {
+  if (action.silent) following_ = false;  // and never again without arming: no old target returns
   const Fault before = reason_;
   if (action.reaction != Reaction::kNothing && !is_latched(state_)) reason_ = action.reason;
   switch (action.reaction) {

@@ -239,5 +239,67 @@ TEST_F(ControllerTest, LatchesALostStance) {
   EXPECT_TRUE(stand_.held(kFrontLeft) && stand_.held(kFrontRight));
 }
 
+// A target rung that is not there: three tries, then back on the old rung; the others never open.
+TEST_F(ControllerTest, TriesThreeTimesThenReturns) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  stand_.break_rung(2);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kAbortReturn, 30.0)) << where();
+  ASSERT_TRUE(reach(S::kHold, 30.0)) << where();
+  EXPECT_EQ(output_.rung_ids[kRearRight], 1) << where();
+  for (const Leg leg : kLegs) EXPECT_TRUE(stand_.held(leg));
+}
+
+// Neither old nor new rung: the claw stays open, the fault is told.
+TEST_F(ControllerTest, LatchesNoGrasp) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 30.0)) << where();
+  stand_.break_rung(2);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kAbortReturn, 30.0)) << where();
+  stand_.hide_rung(1, kRearRight);
+  ASSERT_TRUE(reach(S::kFaultHold, 30.0)) << where();
+  EXPECT_EQ(output_.reason, Fault::kNoGrasp);
+}
+
+// At random times random faults come and go, readings turn to garbage, orders are given: what is
+// sent keeps invariant 2, never more than one limb moves, every stop has a reason (1 and 8).
+TEST_F(ControllerTest, KeepsItsInvariantsInDisorder) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    base::Rng rng(seed);
+    climb_tests::LadderStand stand(params().climb);
+    Controller controller(params());
+    std::swap(stand_, stand);
+    std::swap(controller_, controller);
+    output_ = ControllerOutput();
+    ASSERT_TRUE(arm()) << where();
+    for (int i = 0; i < 3000; ++i) {
+      const double what = rng.uniform();
+      if (what < 0.002) stand_.input.faults |= FaultFlags{1} << rng.below(kNumFaults);
+      if (what > 0.99) stand_.input.faults = 0;
+      if (what > 0.4 && what < 0.42)
+        stand_.input.command = {static_cast<Order>(1 + rng.below(6)), kSession, ++seq_};
+      if (what > 0.5 && what < 0.5005) {
+        stand_.input.axes[rng.below(kNumAxes)].position_rad = climb_tests::kNan;
+      }
+      if (what > 0.6 && what < 0.6005) stand_.input.imu.q_odom_body.w() = climb_tests::kNan;
+      const PerLeg<LimbState> before = output_.limbs;
+      cycle();
+      stand_.input.imu.q_odom_body = stand_.upright();
+      if (is_latched(output_.state)) {
+        ASSERT_NE(output_.reason, Fault::kNone) << "seed " << seed;
+      }
+      for (const Leg leg : kLegs) {
+        const bool opens =
+            output_.limbs[leg] == LimbState::kReleasing && before[leg] == LimbState::kUnloading;
+        if (!opens) continue;
+        for (const Leg other : kLegs) {
+          ASSERT_TRUE(other == leg || is_confirmed(output_.limbs[other])) << "seed " << seed;
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace climb

@@ -51,6 +51,9 @@ class LadderStand {
   }
 
   void break_rung(int id) { broken_.push_back(id); }
+  /// For one leg only the rung is not there.
+  void hide_rung(int id, climb::Leg leg) { hidden_[leg] = id; }
+  Eigen::Quaterniond upright() const { return Eigen::Quaterniond(T_odom_body_.linear()); }
   const climb::LegAngles& measured_rad(climb::Leg leg) const { return measured_rad_[leg]; }
   bool held(climb::Leg leg) const { return held_rung_[leg] > 0; }
   double body_height_m() const { return T_odom_body_.translation().z(); }
@@ -84,7 +87,8 @@ class LadderStand {
     for (const climb::RungView& rung : rungs) {
       const double off_m =
           std::max(std::abs(foot_m.z() - rung.end0_m.z()), std::abs(foot_m.x() - rung.end0_m.x()));
-      if (off_m < params_.robot.claw.capture_m && !is_broken(rung.id)) return rung.id;
+      if (off_m < params_.robot.claw.capture_m && !is_broken(rung.id) && hidden_[leg] != rung.id)
+        return rung.id;
     }
     return 0;
   }
@@ -148,6 +152,7 @@ class LadderStand {
   climb::PerLeg<int> held_rung_{};
   climb::PerLeg<Eigen::Vector3d> held_m_;
   std::vector<int> broken_;
+  climb::PerLeg<int> hidden_{};
   bool hangs_ = false;
 };
 
