@@ -142,7 +142,7 @@ bool Controller::obey(Order order) {
     case Order::kReset:
       return (faults_ & forbidding_reset() & ~kForgottenByReset) == 0 && take(E::kReset);
     case Order::kDisarm:
-      return take(E::kDisarm);
+      return (!was_docked_ || params_.power_off_holds) && take(E::kDisarm);
   }
   return false;
 }

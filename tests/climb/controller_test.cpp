@@ -262,6 +262,25 @@ TEST_F(ControllerTest, LatchesNoGrasp) {
   EXPECT_EQ(output_.reason, Fault::kNoGrasp);
 }
 
+// Hanging, it is disarmed only where something else than torque holds it.
+TEST_F(ControllerTest, KeepsTorqueWhileItHangs) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kDisarm);
+  EXPECT_EQ(output_.command, CommandVerdict::kNotNow);
+  EXPECT_EQ(output_.state, S::kHold);
+
+  ControllerParams braked = params();
+  braked.power_off_holds = true;
+  controller_ = Controller(braked);
+  stand_ = climb_tests::LadderStand(params().climb);
+  output_ = ControllerOutput();
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kDisarm);
+  EXPECT_EQ(output_.state, S::kDisarming);
+  ASSERT_TRUE(reach(S::kDisarmed, 1.0)) << where();
+  EXPECT_FALSE(stand_.input.drives_enabled);
+}
+
 // At random times random faults come and go, readings turn to garbage, orders are given: what is
 // sent keeps invariant 2, never more than one limb moves, every stop has a reason (1 and 8).
 TEST_F(ControllerTest, KeepsItsInvariantsInDisorder) {
