@@ -73,7 +73,7 @@ runtime::ServiceDescription description() {
   return {.name = "gng",
           .number = health_t::SERVICE_GNG,
           .purpose = "gng_service: point clouds in, DD-GNG topology out",
-          .make = [](runtime::ServiceContext context) {
+          .make = [](const runtime::ServiceContext& context) {
             return std::make_unique<GngService>(context);
           }};
 }

@@ -65,7 +65,7 @@ runtime::ServiceDescription description() {
   return {.name = "ladder",
           .number = health_t::SERVICE_LADDER,
           .purpose = "ladder_service: topology in, rungs and safe grasp locations out",
-          .make = [](runtime::ServiceContext context) {
+          .make = [](const runtime::ServiceContext& context) {
             return std::make_unique<LadderService>(context);
           }};
 }

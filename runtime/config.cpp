@@ -257,7 +257,8 @@ void Config::check_all_read(const std::vector<std::string>& own_tables,
 
 std::string Config::resolved() const {
   std::string text;
-  for (const auto& [key, value] : source_->read) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : source_->read)
+    text.append(key).append(" = ").append(value).append("\n");
   return text;
 }
 

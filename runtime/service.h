@@ -37,7 +37,7 @@ struct ServiceDescription {
   std::string name;        ///< also its top-level table in the configuration, e.g. "gng"
   std::int8_t number = 0;  ///< health_t SERVICE_*
   std::string purpose;     ///< one line for --help
-  std::function<std::unique_ptr<Service>(ServiceContext)> make;
+  std::function<std::unique_ptr<Service>(const ServiceContext&)> make;
 };
 
 inline constexpr int kExitAsked = 0;

@@ -111,7 +111,7 @@ runtime::ServiceDescription description() {
   return {.name = "sensor",
           .number = health_t::SERVICE_SENSOR,
           .purpose = "sensor_service: depth frames, IMU and pose in, point clouds out",
-          .make = [](runtime::ServiceContext context) {
+          .make = [](const runtime::ServiceContext& context) {
             return std::make_unique<SensorService>(context);
           }};
 }

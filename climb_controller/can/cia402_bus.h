@@ -16,7 +16,7 @@
 
 namespace can {
 
-class Cia402Bus : public ServoBus {
+class Cia402Bus final : public ServoBus {
  public:
   /// `params` pass check(); transport and recorder (may be null) outlive the bus.
   Cia402Bus(const Cia402Params& params, Transport& transport, FlightRecorder* recorder = nullptr);
