@@ -66,6 +66,9 @@ void read(runtime::ConfigTable table, ddgng::StructureParams& params) {
   table.read("duplicate_distance_m", params.duplicate_distance_m);
   table.read("node_plane_distance_m", params.node_plane_distance_m);
   table.read("node_plane_per_range", params.node_plane_per_range);
+  table.read("level_within_deg", params.level_within_deg);
+  table.read("level_min_support", params.level_min_support);
+  table.read("level_min_spread_m", params.level_min_spread_m);
   table.read("floor_height_known", params.floor_height_known);
   table.read("floor_height_m", params.floor_height_m);
   table.read("space_ahead_m", params.space_ahead_m);
@@ -81,6 +84,11 @@ void read(runtime::ConfigTable table, ddgng::StructureParams& params) {
   table.read("workspace_above_floor_m", params.workspace_above_floor_m);
   table.read("attention_plane_distance_m", params.attention_plane_distance_m);
   table.read("attention_plane_per_range", params.attention_plane_per_range);
+  table.read("residual_patches", params.residual_patches);
+  table.read("patch_interval_frames", params.patch_interval_frames);
+  table.read("patch_cell_m", params.patch_cell_m);
+  table.read("patch_min_interior_m2", params.patch_min_interior_m2);
+  table.read("patch_min_interior_share", params.patch_min_interior_share);
   table.require(check(params));
 }
 

@@ -12,8 +12,12 @@
 namespace ddgng {
 
 PlaneFinder::PlaneFinder(const StructureParams& params, int max_nodes, int max_faces)
-    : params_(params), duplicate_cosine_(cosine_of_degrees(params.duplicate_angle_deg)) {
+    : params_(params),
+      duplicate_cosine_(cosine_of_degrees(params.duplicate_angle_deg)),
+      level_cosine_(cosine_of_degrees(params.level_within_deg)) {
   sample_m_.reserve(params.plane_sample_points);
+  rest_m_.reserve(params.plane_sample_points);
+  heights_m_.reserve(params.plane_sample_points);
   large_labels_.reserve(max_faces / std::max(1, params.large_faces) + 1);
   counted_for_.reserve(max_nodes);
 }
@@ -34,8 +38,9 @@ void PlaneFinder::build(const CloudView& cloud, Topology& topology) {
   counted_for_.assign(topology.num_nodes(), -1);
   for (const int label : large_labels_) {
     const PlaneFit fit = fit_to_nodes(label, topology);
-    add_if_sound(refit_to_sample(fit), fit.mean_m, topology);
+    add_if_sound(level_where_supported(refit_to_sample(fit)), fit.mean_m, topology);
   }
+  add_level_plane_among_the_rest(topology);
   assign_nodes(topology);
 }
 
@@ -85,6 +90,89 @@ PlaneFit PlaneFinder::refit_to_sample(PlaneFit fit) const {
     fit = sums.plane();
   }
   return fit;
+}
+
+int PlaneFinder::num_on(const PlaneFit& fit) const {
+  return static_cast<int>(
+      std::count_if(sample_m_.begin(), sample_m_.end(), [&](const Eigen::Vector3d& p) {
+        return std::abs(fit.distance_m(p)) < params_.plane_on_distance_m;
+      }));
+}
+
+// The lowest step pulls at the floor's refit. Floors are level and z is up: so the level plane wins
+// unless the tilted one carries clearly more points (a ramp).
+PlaneFit PlaneFinder::level_where_supported(const PlaneFit& fit) {
+  if (std::abs(fit.normal.z()) < level_cosine_) return fit;
+  PlaneFit level = PlaneFit::level(fit.mean_m);
+  PlaneFit inliers_of = fit;
+  constexpr int kRounds = 2;
+  for (int round = 0; round < kRounds; ++round) {
+    heights_m_.clear();
+    for (const Eigen::Vector3d& p : sample_m_) {
+      if (std::abs(inliers_of.distance_m(p)) < params_.plane_on_distance_m) {
+        heights_m_.push_back(p.z());
+      }
+    }
+    if (heights_m_.empty()) return fit;
+    const auto median = heights_m_.begin() + static_cast<std::ptrdiff_t>(heights_m_.size() / 2);
+    std::nth_element(heights_m_.begin(), median, heights_m_.end());
+    level.mean_m.z() = *median;
+    inliers_of = level;
+  }
+  const double least = static_cast<double>(params_.level_min_support) * num_on(fit);
+  return num_on(level) >= least ? level : fit;
+}
+
+// A floor once missed draws the attention and gets dense nodes, whose normals scatter so that it
+// never becomes a large label: among the points off all planes the level slab with most of them is
+// tried, too. It must spread in both directions, else it is a strip of a wall.
+void PlaneFinder::add_level_plane_among_the_rest(Topology& topology) {
+  collect_rest(topology);
+  const double height_m = densest_height_m();
+  PlaneSums sums;
+  for (const Eigen::Vector3d& p : rest_m_) {
+    if (std::abs(p.z() - height_m) < params_.plane_on_distance_m) sums.add(p);
+  }
+  if (sums.size() < params_.plane_min_points) return;
+  const PlaneFit fit = sums.plane();
+  double spread_m2 = 0.0;
+  for (const Eigen::Vector3d& p : rest_m_) {
+    if (std::abs(p.z() - height_m) >= params_.plane_on_distance_m) continue;
+    const double across_m = fit.short_axis.dot(p - fit.mean_m);
+    spread_m2 += across_m * across_m / sums.size();
+  }
+  const double least_m = params_.level_min_spread_m;
+  if (spread_m2 < least_m * least_m || std::abs(fit.normal.z()) < level_cosine_) return;
+  add_if_sound(level_where_supported(fit), fit.mean_m, topology);
+}
+
+void PlaneFinder::collect_rest(const Topology& topology) {
+  rest_m_.clear();
+  for (const Eigen::Vector3d& p : sample_m_) {
+    const bool is_on_a_plane =
+        std::any_of(topology.planes.begin(), topology.planes.end(), [&](const Plane& plane) {
+          return std::abs(plane.normal.cast<double>().dot(p) - plane.offset_m) <
+                 params_.plane_refit_distance_m;
+        });
+    if (!is_on_a_plane) rest_m_.push_back(p);
+  }
+}
+
+// The middle of the level slab with most points of the rest.
+double PlaneFinder::densest_height_m() {
+  heights_m_.clear();
+  for (const Eigen::Vector3d& p : rest_m_) heights_m_.push_back(p.z());
+  std::sort(heights_m_.begin(), heights_m_.end());
+  const double slab_m = 2.0 * params_.plane_on_distance_m;
+  std::size_t most = 0;
+  double height_m = 0.0;
+  for (std::size_t low = 0, high = 0; low < heights_m_.size(); ++low) {
+    while (high < heights_m_.size() && heights_m_[high] - heights_m_[low] < slab_m) ++high;
+    if (high - low <= most) continue;
+    most = high - low;
+    height_m = heights_m_[low + most / 2];
+  }
+  return height_m;
 }
 
 void PlaneFinder::add_if_sound(PlaneFit fit, const Eigen::Vector3d& center_m,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large labels refitted to points of the cloud, and the nodes that lie on them. Beyond the paper:
 // labels scatter where nodes are dense, planes do not. A ladder's front is no plane, because the
-// heads see through it (opaque test).
+// heads see through it (opaque test). z is up: nearly level planes are tried exactly level, and a
+// floor that is no large label is looked for by height.
 #pragma once
 
 #include <vector>
@@ -28,6 +29,11 @@ class PlaneFinder {
   void order_large_labels(const Topology& topology);
   PlaneFit fit_to_nodes(int label_index, const Topology& topology);
   PlaneFit refit_to_sample(PlaneFit fit) const;
+  PlaneFit level_where_supported(const PlaneFit& fit);
+  void add_level_plane_among_the_rest(Topology& topology);
+  void collect_rest(const Topology& topology);
+  double densest_height_m();
+  int num_on(const PlaneFit& fit) const;
   bool is_duplicate(const PlaneFit& fit, const Eigen::Vector3d& center_m,
                     const Topology& topology) const;
   bool is_supported_and_opaque(const PlaneFit& fit) const;
@@ -35,11 +41,13 @@ class PlaneFinder {
   void assign_nodes(Topology& topology) const;
 
   StructureParams params_;
-  double duplicate_cosine_;
+  double duplicate_cosine_, level_cosine_;
   Eigen::Vector3d heads_m_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> sample_m_;
+  std::vector<Eigen::Vector3d> rest_m_;  ///< of the sample: off all planes
   std::vector<int> large_labels_;  ///< largest area first
-  std::vector<int> counted_for_;   ///< the last label that a node was counted for
+  std::vector<double> heights_m_;
+  std::vector<int> counted_for_;  ///< the last label that a node was counted for
 };
 
 }  // namespace ddgng
