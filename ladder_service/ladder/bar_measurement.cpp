@@ -27,6 +27,7 @@ struct BarMeasurement::Fit {
   double from_m = 0.0;
   double to_m = 0.0;
   MeasuredBar out;
+  bool is_board = false;  ///< wide and between no rails: its front is flat
 };
 
 namespace {
@@ -58,6 +59,7 @@ std::optional<MeasuredBar> BarMeasurement::measure(const BarFrame& frame, int ba
   Fit fit;
   MeasuredBar& out = fit.out;
   out.bar = bar_index;
+  fit.is_board = bar.wide && rails.left == nullptr && rails.right == nullptr;
   if (!refit(frame, bar, rails, fit)) return std::nullopt;
   const Eigen::Vector3d ray = unit(fit.axis.origin_m - bar.eye_m, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d& d = fit.axis.direction;
@@ -159,7 +161,8 @@ void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit
   // Pixels that touch the edge are lost: only so much of the height is seen.
   constexpr double kLeastVisible = 0.3;
   const double visible_m = std::clamp(radius_m - half_pixel_m, kLeastVisible * radius_m, radius_m);
-  const Eigen::Vector3d push_back = mean_chord_depth_m(radius_m, visible_m) * fit.depth;
+  const double depth_m = fit.is_board ? 0.0 : mean_chord_depth_m(radius_m, visible_m);
+  const Eigen::Vector3d push_back = depth_m * fit.depth;
   fit.out.radius_m = estimate_m;
   fit.out.end0_m = fit.axis.at(fit.from_m) + push_back;
   fit.out.end1_m = fit.axis.at(fit.to_m) + push_back;

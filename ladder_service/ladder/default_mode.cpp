@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace ladder {
 
@@ -26,8 +27,7 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
   estimate.spacing_m = confirmation_.spacing().spacing_m;
   estimate.spacing_sigma_m = confirmation_.spacing().sigma_m;
 
-  order_.clear();
-  for (int i = 0; i < static_cast<int>(tracks.size()); ++i) order_.push_back(i);
+  choose_published(tracks);
   std::sort(order_.begin(), order_.end(), [&](int a, int b) {
     const double za = tracks[a].bar.middle_m().z();
     const double zb = tracks[b].bar.middle_m().z();
@@ -43,14 +43,52 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
   write_rails(found, estimate, rails);
 }
 
+// Proven rungs; bars seen often enough and, unless they stood between rails, as long as a rung.
+bool DefaultMode::is_published(const BarTrack& track) const {
+  if (track.is_proven) return true;
+  if (track.presence < params_.track.trust_evidence) return false;
+  return track.evidence > 0 || track.bar.length_m() >= params_.test.min_width_m;
+}
+
+// One bar per bar height: the best supported.
+void DefaultMode::choose_published(const std::vector<BarTrack>& tracks) {
+  order_.clear();
+  for (int i = 0; i < static_cast<int>(tracks.size()); ++i) {
+    if (is_published(tracks[i])) order_.push_back(i);
+  }
+  const auto rank = [&](int i) {
+    const BarTrack& track = tracks[i];
+    return std::tuple(!track.is_proven, -track.bar.weight * track.bar.length_m(), track.id);
+  };
+  std::sort(order_.begin(), order_.end(), [&](int a, int b) { return rank(a) < rank(b); });
+  std::size_t num_kept = 0;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const int track = order_[i];
+    const bool is_duplicate =
+        !tracks[track].is_proven &&
+        std::any_of(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(num_kept),
+                    [&](int kept) { return is_same_bar(tracks[kept].bar, tracks[track].bar); });
+    if (!is_duplicate) order_[num_kept++] = track;
+  }
+  order_.resize(num_kept);
+}
+
+// Their middles lie within one bar height across, and they overlap along.
+bool DefaultMode::is_same_bar(const MeasuredBar& a, const MeasuredBar& b) const {
+  const Axis axis{a.middle_m(), unit(a.end1_m - a.end0_m, Eigen::Vector3d::UnitX())};
+  const double bar_height_m = 2.0 * params_.bar.wide_half_height_m;
+  return axis.distance(b.middle_m()) < bar_height_m &&
+         std::abs(axis.along(b.middle_m())) < 0.5 * (a.length_m() + b.length_m());
+}
+
 Rung DefaultMode::to_rung(const BarTrack& track, bool confirmed) const {
   const MeasuredBar& bar = track.bar;
   const bool trusted = confirmed && track.is_proven && track.num_missed < params_.track.max_missed;
   Rung rung;
   rung.id = track.id;
   rung.state = trusted ? RungState::kTrusted : RungState::kCandidate;
-  rung.age = track.evidence;
-  rung.confidence = static_cast<double>(track.evidence) / params_.track.max_evidence;
+  rung.age = track.is_proven ? track.evidence : track.presence;
+  rung.confidence = static_cast<double>(rung.age) / params_.track.max_evidence;
   constexpr double kDecimeter_m = 0.1;
   rung.evaluation = bar.num_inliers / ((1.0 + bar.num_outliers) * bar.length_m() / kDecimeter_m);
   rung.num_inliers = bar.num_inliers;
