@@ -96,6 +96,18 @@ void copy_objects(const Topology& topology, topology_t& m) {
               [](const Object& x) { return x.velocity_m_s.z(); });
 }
 
+/// The body's x axis made level; odom's where the body looks straight up or down.
+Eigen::Vector2f level_ahead(const point_cloud_t& cloud) {
+  const float w = cloud.q_odom_body[0];
+  const float x = cloud.q_odom_body[1];
+  const float y = cloud.q_odom_body[2];
+  const float z = cloud.q_odom_body[3];
+  const Eigen::Vector2f ahead(w * w + x * x - y * y - z * z, 2.0F * (x * y + w * z));
+  const float length = ahead.norm();
+  constexpr float kLeast = 0.05F;
+  return length > kLeast ? Eigen::Vector2f(ahead / length) : Eigen::Vector2f::UnitX();
+}
+
 }  // namespace
 
 ddgng::CloudView to_cloud_view(const point_cloud_t& message, float time_step_s) {
@@ -108,6 +120,7 @@ ddgng::CloudView to_cloud_view(const point_cloud_t& message, float time_step_s) 
     view.head_position_m[i] = {message.head_x_m[i], message.head_y_m[i], message.head_z_m[i]};
     view.head_valid[i] = message.head_utime[i] != 0;
   }
+  view.ahead = level_ahead(message);
   view.range_max_m = message.range_max_m;
   view.time_step_s = time_step_s;
   view.sequence = static_cast<std::uint64_t>(message.seq);

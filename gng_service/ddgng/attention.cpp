@@ -66,6 +66,7 @@ void Attention::set_workspace(const Topology& previous, const CloudView& cloud) 
   const float ahead_m =
       params_.workspace_ahead_m > 0.0F ? params_.workspace_ahead_m : cloud.range_max_m;
   workspace_.far_m = ahead_m;
+  workspace_.ahead = cloud.ahead;
   planes_.assign(previous.planes.begin(), previous.planes.end());
   workspace_.floor = lowest_ground(planes_, workspace_.heads_m);
 }
@@ -142,8 +143,10 @@ void Attention::mark_off_planes(const CloudView& cloud, std::size_t begin, std::
     const float floor_m = w.floor.normal.x() * x_m[i] + w.floor.normal.y() * y_m[i] +
                           w.floor.normal.z() * z_m[i] - w.floor.offset_m;
     clear_m[i] = distance_m + per_range * std::sqrt(dx * dx + dy * dy + dz * dz);
-    in_region_[i] = static_cast<std::uint32_t>(dx > w.near_m) & (dx < w.far_m) &
-                    (std::abs(dy) < w.lateral_m) & (floor_m > above_m);
+    const float ahead_m = w.ahead.x() * dx + w.ahead.y() * dy;
+    const float aside_m = w.ahead.x() * dy - w.ahead.y() * dx;
+    in_region_[i] = static_cast<std::uint32_t>(ahead_m > w.near_m) & (ahead_m < w.far_m) &
+                    (std::abs(aside_m) < w.lateral_m) & (floor_m > above_m);
   }
   for (const Plane& plane : planes_) {
     const float nx = plane.normal.x();
@@ -166,8 +169,10 @@ bool Attention::contains(const Eigen::Vector3f& p) const {
   }
   const Workspace& w = workspace_;
   const Eigen::Vector3f d = p - w.heads_m;
+  const float ahead_m = w.ahead.x() * d.x() + w.ahead.y() * d.y();
+  const float aside_m = w.ahead.x() * d.y() - w.ahead.y() * d.x();
   const bool in_workspace =
-      d.x() > w.near_m && d.x() < w.far_m && std::abs(d.y()) < w.lateral_m &&
+      ahead_m > w.near_m && ahead_m < w.far_m && std::abs(aside_m) < w.lateral_m &&
       w.floor.normal.dot(p) - w.floor.offset_m > params_.workspace_above_floor_m;
   const float clear_m = clearance_m(p);
   return in_workspace && !patches_.contains(p, clear_m) &&

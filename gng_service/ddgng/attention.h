@@ -40,7 +40,8 @@ class Attention {
   };
   struct Workspace {
     Eigen::Vector3f heads_m = Eigen::Vector3f::Zero();    ///< mean position of the valid heads
-    float near_m = 0.0F, far_m = 0.0F, lateral_m = 0.0F;  ///< from the heads along x, along y
+    Eigen::Vector2f ahead = Eigen::Vector2f::UnitX();     ///< level
+    float near_m = 0.0F, far_m = 0.0F, lateral_m = 0.0F;  ///< from the heads ahead, to either side
     Plane floor;                                          ///< points below it are left out
   };
   static constexpr std::size_t kBlock = 256;

@@ -19,6 +19,7 @@ struct CloudView {
   std::array<Eigen::Vector3f, kNumHeads> head_position_m{};
   std::array<bool, kNumHeads>
       head_valid{};  ///< false: this head gave no point and its position means nothing
+  Eigen::Vector2f ahead = Eigen::Vector2f::UnitX();  ///< unit, level: where the body looks
   float range_max_m = 4.0F;
   float time_step_s = 0.0F;  ///< since the previous frame; 0 on the first
   std::uint64_t sequence =

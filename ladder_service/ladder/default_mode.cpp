@@ -43,11 +43,15 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
   write_rails(found, estimate, rails);
 }
 
-// Proven rungs; bars seen often enough and, unless they stood between rails, as long as a rung.
+// Proven rungs; bars seen often enough and, unless they stood between rails, as long and as level
+// as a rung.
 bool DefaultMode::is_published(const BarTrack& track) const {
   if (track.is_proven) return true;
   if (track.presence < params_.track.trust_evidence) return false;
-  return track.evidence > 0 || track.bar.length_m() >= params_.test.min_width_m;
+  const double length_m = track.bar.length_m();
+  const double rise_m = std::abs(track.bar.end1_m.z() - track.bar.end0_m.z());
+  return track.evidence > 0 || (length_m >= params_.test.min_width_m &&
+                                rise_m <= params_.affordance.max_tilt_sin * length_m);
 }
 
 // One bar per bar height: the best supported.

@@ -111,8 +111,8 @@ Spacing LadderConfirmation::measure(const std::vector<BarTrack>& tracks) {
   if (rails_.empty()) return {};
   const Axis& left = rails_[0].axis;
   for (const BarTrack& track : tracks) {
-    // A damaged rung does not stand at its proper height.
-    const unsigned damage = track.flags(params_.measure) & (kFlagStub | kFlagBent | kFlagSagged);
+    // A bent rung does not stand at its proper height; a stub does.
+    const unsigned damage = track.flags(params_.measure) & (kFlagBent | kFlagSagged | kFlagTilted);
     if (!track.is_proven || damage != 0) continue;
     heights_m_.push_back(left.along(track.bar.middle_m()));
   }

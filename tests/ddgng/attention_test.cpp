@@ -50,6 +50,25 @@ TEST(Attention, BeforeTheFirstStructure) {
   EXPECT_TRUE(boxes.select(cloud.view()).empty());
 }
 
+// The workspace turns with the robot: what lies ahead of it draws attention, what lies beside it
+// does not.
+TEST(Attention, WorkspaceTurnsWithTheRobot) {
+  structure_scene::Cloud cloud;
+  cloud.add({2.0F, 0.0F, 0.5F});
+  cloud.add({0.0F, 2.0F, 0.5F});
+  for (const bool turned : {false, true}) {
+    Attention attention(StructureParams(), 2);
+    CloudView view = cloud.view();
+    if (turned) view.ahead = Eigen::Vector2f::UnitY();
+    attention.set_regions(Topology(), view);
+    const auto selected = attention.select(view);
+    ASSERT_EQ(selected.size(), 1U);
+    EXPECT_EQ(selected[0], turned ? 1U : 0U);
+    EXPECT_EQ(attention.contains({2.0F, 0.0F, 0.5F}), !turned);
+    EXPECT_EQ(attention.contains({0.0F, 2.0F, 0.5F}), turned);
+  }
+}
+
 // With equal margins, a point is selected exactly when a node there would be strong: the fast loop
 // agrees with the plain condition, at all block lengths.
 TEST(Attention, SelectAgreesWithContains) {
