@@ -105,19 +105,18 @@ def organised_head(options, cloud):
 
 
 def default_view(points, range_max_m):
-    """In the middle of the cloud, 0.9 m above its low points, looking where most of these are in range: at the floor."""
+    """In the middle of the cloud, 0.55 m above its low points, looking where most points are in range."""
     sample = points[:: max(1, len(points) // 5000)]
     x, y = (sorted(p[i] for p in sample)[len(sample) // 2] for i in range(2))
-    low = sorted(p[2] for p in sample)[len(sample) // 20]
-    floor = [p for p in sample if abs(p[2] - low) < 0.1]
+    z = sorted(p[2] for p in sample)[len(sample) // 20] + 0.55
 
     def num_ahead(yaw_deg):
         cosine, sine = math.cos(math.radians(yaw_deg)), math.sin(math.radians(yaw_deg))
-        ahead = [cosine * (p[0] - x) + sine * (p[1] - y) for p in floor]
-        aside = [cosine * (p[1] - y) - sine * (p[0] - x) for p in floor]
-        return sum(1 for a, b in zip(ahead, aside) if 1.0 < a < range_max_m and abs(b) < a)
+        ahead = [cosine * (p[0] - x) + sine * (p[1] - y) for p in sample]
+        aside = [cosine * (p[1] - y) - sine * (p[0] - x) for p in sample]
+        return sum(1 for a, b in zip(ahead, aside) if 0.3 < a < range_max_m and abs(b) < a)
 
-    return [x, y, low + 0.9, max((45.0 * i for i in range(8)), key=num_ahead)]
+    return [x, y, z, max((45.0 * i for i in range(8)), key=num_ahead)]
 
 
 def drawn_heads(options, cloud):

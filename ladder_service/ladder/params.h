@@ -64,7 +64,7 @@ struct LadderTestParams {
   double frame_min_spacing_m = 0.19;   ///< per frame, coarse (recipe)
   double frame_max_spacing_m = 0.45;   ///<
   double spacing_tolerance = 0.2;      ///< distance from a whole multiple of the spacing (recipe)
-  bool thick_rungs = false;            ///< also bars found at the wide height (option for 100 mm)
+  bool thick_rungs = true;             ///< also bars found at the wide height (100 mm)
   // Hole test: between rails and rungs there is nothing.
   double hole_max = 0.15;       ///< weight in the panel / weight on the rungs (recipe)
   double hole_rail_m = 0.06;    ///< panel begins this far from a rail's axis (recipe)

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Real sensor frames, skipped by name where the recordings are missing. Stairs are bars, never a ladder."""
+
+import csv
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import real_frames  # noqa: E402
+import terrain_agreement  # noqa: E402
+
+CONFIRMED = 2
+SAFE_GROUND, WALL = 1, 2
+
+
+def bar_heights_m(topology, ladder):
+    """Above the lowest safe ground."""
+    floor_m = min(offset / nz for offset, nz, plane_class in
+                  zip(topology.plane_offset_m, topology.plane_normal_z, topology.plane_class) if plane_class == SAFE_GROUND)
+    return [0.5 * (a + b) - floor_m for a, b in zip(ladder.rung_z0_m, ladder.rung_z1_m)]
+
+
+class RealFrames(unittest.TestCase):
+    def understand(self, name):
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                return real_frames.understand(name, folder)
+        except real_frames.Missing as missing:
+            self.skipTest(str(missing))
+
+    def test_stairs_are_bars_and_no_ladder(self):
+        """Five of the six treads measured by hand are among few bars, each within 2 cm; nothing is called a ladder."""
+        frames = self.understand("stairs/capture0005.pcd")
+        self.assertEqual(len(frames), real_frames.FRAMES)
+        self.assertTrue(all(ladder.ladder_state != CONFIRMED for _, ladder in frames))
+        topology, ladder = frames[-1]
+        self.assertIn(SAFE_GROUND, topology.plane_class)
+        self.assertIn(WALL, topology.plane_class)
+        bars_m = bar_heights_m(topology, ladder)
+        with open(real_frames.recording("stairs/capture0005_treads.csv"), encoding="utf-8") as file:
+            rows = csv.reader(line for line in file if not line.startswith("#"))
+            treads_m = [float(row[3]) for row in rows if row]
+        self.assertGreaterEqual(sum(any(abs(tread - bar) <= 0.02 for bar in bars_m) for tread in treads_m), 5)
+        self.assertLessEqual(len(bars_m), 15)
+
+    def test_stairs_from_the_side_are_no_ladder(self):
+        """The same stairs in another frame confirm nothing either."""
+        self.assertTrue(all(ladder.ladder_state != CONFIRMED for _, ladder in self.understand("stairs/capture0002.pcd")))
+
+    def test_terrain_classes_agree_with_planes_set_by_hand(self):
+        """Seen from two places: the floor is safe ground, the walls are walls."""
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                floor = terrain_agreement.agreement("floor", folder)["safe ground"]
+                walls = terrain_agreement.agreement("walls", folder)["wall"]
+        except real_frames.Missing as missing:
+            self.skipTest(str(missing))
+        for nodes, agreeing in (floor, walls):
+            self.assertGreater(nodes, 50)
+            self.assertGreater(agreeing / nodes, 0.9)
+
+
+if __name__ == "__main__":
+    unittest.main()
