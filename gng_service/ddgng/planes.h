@@ -45,7 +45,7 @@ class PlaneFinder {
   Eigen::Vector3d heads_m_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> sample_m_;
   std::vector<Eigen::Vector3d> rest_m_;  ///< of the sample: off all planes
-  std::vector<int> large_labels_;  ///< largest area first
+  std::vector<int> large_labels_;        ///< largest area first
   std::vector<double> heights_m_;
   std::vector<int> counted_for_;  ///< the last label that a node was counted for
 };

@@ -51,10 +51,10 @@ struct StructureParams {
   float node_plane_distance_m = 0.025F;   ///< [m] a node belongs to a plane nearer than this
   float node_plane_per_range = 0.01F;     ///< [m per m range] added to it
   float level_within_deg = 8.0F;          ///< [deg] a plane so near to level is tried level
-  float level_min_support = 0.8F;         ///< [share of the tilted one's support] level wins from here
-  float level_min_spread_m = 0.1F;        ///< [m] deviation across a level plane found by height
-  bool floor_height_known = false;        ///< a level plane at floor_height_m comes first
-  float floor_height_m = 0.0F;            ///< [m] in the odom frame
+  float level_min_support = 0.8F;   ///< [share of the tilted one's support] level wins from here
+  float level_min_spread_m = 0.1F;  ///< [m] deviation across a level plane found by height
+  bool floor_height_known = false;  ///< a level plane at floor_height_m comes first
+  float floor_height_m = 0.0F;      ///< [m] in the odom frame
 
   // --- objects and suspicion (paper, section II-B) ---
   float space_ahead_m = 0.0F;       ///< [m] moving space ahead of the heads; 0 = range of the heads

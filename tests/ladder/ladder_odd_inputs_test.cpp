@@ -84,7 +84,8 @@ TEST_P(OddInputs, CoincidentNodesMakeNoBar) {
   EXPECT_TRUE(estimate.rails.empty());
 }
 
-// Nodes exactly on a line, without moments, are a bar (in default mode once it has its evidence) and give finite numbers.
+// Nodes exactly on a line, without moments, are a bar (in default mode once it has its evidence)
+// and give finite numbers.
 TEST_P(OddInputs, ExactLineWithoutMomentsIsFinite) {
   LadderTracker tracker(params());
   NodeCloud cloud;
