@@ -113,7 +113,8 @@ TEST_P(LadderSceneTest, StrengthFollowsTheParts) {
   }
 }
 
-// A ladder that stands as a dense label before a wall is no plane: the heads see through it.
+// A ladder that stands as a dense label before a wall is no plane: the heads see through it. (The
+// floor below, which has no label here, is found by its height.)
 TEST_P(LadderSceneTest, TheFrontOfALadderIsNoPlane) {
   LadderScene scene = structure_scene::make_ladder_scene(GetParam());
   // A sheet of nodes, as an early and coarse graph lays it over a ladder.
@@ -129,8 +130,12 @@ TEST_P(LadderSceneTest, TheFrontOfALadderIsNoPlane) {
   StructureBuilder builder(StructureParams(), 1000, 12000);
   builder.build(scene.cloud.view(), scene.topology);
   ASSERT_EQ(scene.topology.labels.size(), 1U);
-  EXPECT_TRUE(scene.topology.planes.empty());
+  for (const Plane& plane : scene.topology.planes) {
+    EXPECT_EQ(plane.plane_class, Class::kSafeGround);
+    EXPECT_NEAR(plane.offset_m, 0.0F, 0.02F);
+  }
   EXPECT_EQ(scene.topology.node_class[20], Class::kObstacle);
+  EXPECT_EQ(scene.topology.node_plane[20], -1);
 }
 
 // A known floor replaces a label that is tilted and slightly off.
