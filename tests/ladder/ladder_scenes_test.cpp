@@ -200,8 +200,8 @@ TEST(LadderScenes, FindsOtherShapes) {
   }
 }
 
-// The radius tells thin rungs from thick ones; thick ones are rungs only by option.
-TEST(LadderScenes, ThickRungsNeedTheOption) {
+// Bars of 100 mm are rungs with their measured radius, unless the option says that they are none.
+TEST(LadderScenes, ThickRungsAreMeasured) {
   LadderShape shape;
   shape.rung_diameter_m = 0.10;
   shape.rail_width_m = 0.04;
@@ -209,12 +209,13 @@ TEST(LadderScenes, ThickRungsNeedTheOption) {
   LadderScene scene(9);
   scene.node_spacing_m = 0.02;
   scene.add_ladder(shape);
-  EXPECT_EQ(run(scene, 5).state, LadderState::kNone);
   LadderParams params;
-  params.test.thick_rungs = true;
-  LadderTracker tracker(params);
-  LadderEstimate estimate;
-  for (int frame = 0; frame < 5; ++frame) estimate = tracker.update(scene.cloud(frame));
+  params.test.thick_rungs = false;
+  LadderTracker without(params);
+  for (int frame = 0; frame < 5; ++frame) {
+    EXPECT_EQ(without.update(scene.cloud(frame)).state, LadderState::kNone);
+  }
+  const LadderEstimate estimate = run(scene, 5);
   EXPECT_EQ(estimate.state, LadderState::kConfirmed);
   for (const RungTruth& truth : scene.truth) {
     const Rung* rung = match(estimate, truth);
