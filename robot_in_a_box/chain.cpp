@@ -8,8 +8,11 @@
 namespace robot_in_a_box {
 
 struct Chain::Member {
-  Member(const runtime::ServiceDescription& description, const runtime::Config& config, std::shared_ptr<lcm_t> connection)
-      : bus(std::move(connection)), health(description.number), journal(description.number, description.name) {
+  Member(const runtime::ServiceDescription& description, const runtime::Config& config,
+         std::shared_ptr<lcm_t> connection)
+      : bus(std::move(connection)),
+        health(description.number),
+        journal(description.number, description.name) {
     journal.show_from(ladder_msgs::event_t::LEVEL_WARNING);
     service = description.make({bus, config.table(description.name), health, journal});
   }
@@ -29,8 +32,8 @@ struct Chain::Recorder {
 };
 
 Chain::Chain(const runtime::Config& config) : connection_(runtime::open_lcm("memq://")) {
-  const runtime::ServiceDescription descriptions[] = {sensor_service::description(), gng_service::description(),
-                                                      ladder_service::description()};
+  const runtime::ServiceDescription descriptions[] = {
+      sensor_service::description(), gng_service::description(), ladder_service::description()};
   std::vector<std::string> tables;
   for (const runtime::ServiceDescription& description : descriptions) {
     members_.push_back(std::make_unique<Member>(description, config, connection_));
@@ -49,13 +52,15 @@ void Chain::record(const std::vector<std::string>& channels, Output output) {
   }
 }
 
-void Chain::feed(const std::string& channel, const void* bytes, std::size_t num_bytes, std::int64_t utime_us) {
+void Chain::feed(const std::string& channel, const void* bytes, std::size_t num_bytes,
+                 std::int64_t utime_us) {
   lcm_publish(connection_.get(), channel.c_str(), bytes, static_cast<unsigned int>(num_bytes));
   work({.monotonic_us = utime_us, .utime_us = utime_us});
 }
 
 void Chain::work(const base::Now& now) {
-  // All buses share the connection, so any of them drains for all; a message published by a step is delivered in the next round.
+  // All buses share the connection, so any of them drains for all; a message published by a step is
+  // delivered in the next round.
   while (members_.front()->bus.drain() > 0) {
     for (const auto& member : members_) member->service->step(now);
   }

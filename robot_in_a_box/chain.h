@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The perception services in one process on LCM's in-memory transport, in virtual time: the same classes as in the live processes,
-// stepped after every message. Output is a function of configuration and input alone.
+// The perception services in one process on LCM's in-memory transport, in virtual time: the same
+// classes as in the live processes, stepped after every message. Output is a function of
+// configuration and input alone.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +28,10 @@ class Chain {
   /// Records what the chain publishes on these channels.
   void record(const std::vector<std::string>& channels, Output output);
 
-  /// Delivers one message as if it had arrived at this time and lets every service work until nothing is left to do.
-  void feed(const std::string& channel, const void* bytes, std::size_t num_bytes, std::int64_t utime_us);
+  /// Delivers one message as if it had arrived at this time and lets every service work until
+  /// nothing is left to do.
+  void feed(const std::string& channel, const void* bytes, std::size_t num_bytes,
+            std::int64_t utime_us);
 
   /// Messages that a service refused, over all causes.
   std::int64_t num_rejected() const;

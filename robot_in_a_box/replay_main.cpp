@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ladder_replay: reads head frames, IMU and pose from a log, runs the perception chain over every one of them as fast as it can,
-// and writes clouds, topologies and rungs (and the recorded truth) to another log. Two runs give the same bytes.
+// ladder_replay: reads head frames, IMU and pose from a log, runs the perception chain over every
+// one of them as fast as it can, and writes clouds, topologies and rungs (and the recorded truth)
+// to another log. Two runs give the same bytes.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -45,7 +46,8 @@ Counts replay(const Arguments& arguments) {
     event.channel = channel;
     event.data = const_cast<void*>(bytes);  // NOLINT: LCM's structure has no const
     event.datalen = static_cast<std::int32_t>(num_bytes);
-    if (out.writeEvent(&event) != 0) throw std::runtime_error(arguments.out + ": writing failed; is the disk full?");
+    if (out.writeEvent(&event) != 0)
+      throw std::runtime_error(arguments.out + ": writing failed; is the disk full?");
   };
 
   robot_in_a_box::Chain chain(runtime::Config::load(arguments.config_files, arguments.overrides));
@@ -76,12 +78,16 @@ Counts replay(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Runs the perception chain over a recorded log: every frame, as fast as possible, the same bytes each time."};
+  CLI::App app{
+      "Runs the perception chain over a recorded log: every frame, as fast as possible, the same "
+      "bytes each time."};
   Arguments arguments;
-  app.add_option("in", arguments.in, "LCM log with LADDER_TOF_*, LADDER_IMU, LADDER_POSE")->required();
+  app.add_option("in", arguments.in, "LCM log with LADDER_TOF_*, LADDER_IMU, LADDER_POSE")
+      ->required();
   app.add_option("-o,--out", arguments.out, "LCM log to write")->required();
   app.add_option("-c,--config", arguments.config_files, "TOML file; later ones win");
-  app.add_option("--set", arguments.overrides, "table.key=value, wins over the files")->allow_extra_args(false);
+  app.add_option("--set", arguments.overrides, "table.key=value, wins over the files")
+      ->allow_extra_args(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -90,11 +96,14 @@ int main(int argc, char** argv) {
   try {
     const auto start = std::chrono::steady_clock::now();
     const Counts counts = replay(arguments);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::fprintf(stderr, "replayed %d messages in %.2f s, %d written, %lld rejected\n", counts.in, seconds, counts.out,
-                 static_cast<long long>(counts.rejected));
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::fprintf(stderr, "replayed %d messages in %.2f s, %d written, %lld rejected\n", counts.in,
+                 seconds, counts.out, static_cast<long long>(counts.rejected));
     if (counts.in == 0) {
-      std::fprintf(stderr, "%s holds no LADDER_TOF_*, LADDER_IMU or LADDER_POSE message before its end or first damage\n",
+      std::fprintf(stderr,
+                   "%s holds no LADDER_TOF_*, LADDER_IMU or LADDER_POSE message before its end or "
+                   "first damage\n",
                    arguments.in.c_str());
       return runtime::kExitDevice;
     }

@@ -13,9 +13,9 @@ struct GrowingParams {
   std::uint64_t seed = 1;  ///< of all random numbers, together with the cloud's sequence number
 
   // Algorithm 1: the signals of one frame.
-  int uniform_signals = 1000;    ///< per frame, drawn from all points; 0..1e6 (measured)
-  int attention_signals = 4000;  ///< per frame, drawn from the suspected area, else from all
-                                 ///< points; 0..1e6; 0 = no density control at all (measured)
+  int uniform_signals = 1000;     ///< per frame, drawn from all points; 0..1e6 (measured)
+  int attention_signals = 4000;   ///< per frame, drawn from the suspected area, else from all
+                                  ///< points; 0..1e6; 0 = no density control at all (measured)
   int insertion_interval = 10;    ///< signals between insertion rounds, >= 1 (measured)
   int plain_insertion_every = 4;  ///< every so many rounds also one insertion by error alone, >= 1
                                   ///< (measured)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The door through which depth frames and inertial samples come in, whatever delivers them: recorded or simulated heads over LCM
-// today, cameras later.
+// The door through which depth frames and inertial samples come in, whatever delivers them:
+// recorded or simulated heads over LCM today, cameras later.
 #pragma once
 
 #include "base/clock.h"
@@ -21,7 +21,8 @@ class FrameSink {
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  /// Hands over what has arrived since the last call, inertial samples first, frames by their time. Never blocks or throws.
+  /// Hands over what has arrived since the last call, inertial samples first, frames by their time.
+  /// Never blocks or throws.
   virtual void poll(const base::Now& now, FrameSink& sink) = 0;
 };
 
