@@ -107,7 +107,7 @@ bool PlanePatches::draw_plane(base::Rng& rng, PlaneFit& plane) const {
   const auto draw = [&]() -> const Eigen::Vector3d& {
     return sample_m_[rng.below(static_cast<std::uint32_t>(sample_m_.size()))];
   };
-  const Eigen::Vector3d first_m = draw();
+  const Eigen::Vector3d& first_m = draw();
   std::array<Eigen::Vector3d, 2> side_m;
   int num_found = 0;
   for (int i = 0; i < kPartnerDraws && num_found < 2; ++i) {
@@ -126,13 +126,14 @@ bool PlanePatches::draw_plane(base::Rng& rng, PlaneFit& plane) const {
 
 void PlanePatches::count_cells(const PlaneFit& plane, const CloudView& cloud,
                                std::span<const std::uint32_t> points) {
+  constexpr int kMiddle = kCells / 2;
   std::fill(cells_.begin(), cells_.end(), std::uint16_t{0});
   for (const std::uint32_t i : points) {
     const Eigen::Vector3d p = point_m(cloud, i);
     if (std::abs(plane.distance_m(p)) >= kFitDistance_m) continue;
     const Eigen::Vector2d cell = in_plane_m(plane, p) / params_.patch_cell_m;
-    const double column = std::floor(cell.x()) + kCells / 2;
-    const double row = std::floor(cell.y()) + kCells / 2;
+    const double column = std::floor(cell.x()) + kMiddle;
+    const double row = std::floor(cell.y()) + kMiddle;
     if (!(column >= 0 && column < kCells && row >= 0 && row < kCells)) continue;
     std::uint16_t& count = cells_[static_cast<int>(row) * kCells + static_cast<int>(column)];
     if (count < std::numeric_limits<std::uint16_t>::max()) ++count;

@@ -125,6 +125,7 @@ void listen(const Arguments& arguments, Scorer& scorer, Score& counts) {
   auto& ladders = bus.queue(runtime::channels::kRungs, kCapacity);
   auto& topologies = bus.newest(runtime::channels::kTopology);
   std::vector<runtime::Queue<ladder_msgs::tof_frame_t>*> depths;
+  depths.reserve(runtime::channels::kTof.size());
   for (const auto& channel : runtime::channels::kTof) {
     depths.push_back(&bus.queue(channel, 16));
   }
