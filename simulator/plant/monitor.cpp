@@ -18,6 +18,8 @@ constexpr std::uint16_t kTemperatureWarning = 0x4310;
   std::array<char, 200> buffer{};
   va_list arguments;
   va_start(arguments, format);
+  // clang-tidy 14 does not see that va_start initialises its argument.
+  // NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized)
   std::vsnprintf(buffer.data(), buffer.size(), format, arguments);
   va_end(arguments);
   return buffer.data();
