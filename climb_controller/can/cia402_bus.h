@@ -8,41 +8,35 @@
 #include <cstdint>
 #include <vector>
 
-#include "can/bus_line.h"
 #include "can/cia402_axis.h"
 #include "can/cia402_objects.h"
-#include "can/servo_bus.h"
-#include "can/transport.h"
+#include "can/phased_bus.h"
 
 namespace can {
 
-class Cia402Bus final : public ServoBus {
+class Cia402Bus final : public PhasedBus {
  public:
   /// `params` pass check(); transport and recorder (may be null) outlive the bus.
   Cia402Bus(const Cia402Params& params, Transport& transport, FlightRecorder* recorder = nullptr);
 
   int num_axes() const override { return static_cast<int>(axes_.size()); }
-  BusPhase phase() const override { return phase_; }
-  Capabilities capabilities() const override { return capabilities_; }
-  std::span<const Fault> faults() const override { return faults_.all(); }
   std::span<const ObjectIssue> issues() const override { return issues_; }
 
-  bool configure() override;
-  bool enable() override;
-  bool disable() override;
-  bool stop(StopKind kind) override;
-  bool rearm() override;
-  void poll(std::int64_t now_us) override;
-  void exchange(std::int64_t now_us, const Targets& targets,
-                std::span<AxisFeedback> feedback) override;
-
-  /// Frames with a wrong length, identifier or format since construction.
-  std::uint64_t num_malformed() const { return line_.num_malformed(); }
-
  private:
-  void enter(BusPhase phase);
-  void begin_phase();
-  void advance();
+  bool is_cycling() const override;
+  void take(const ReceivedFrame& received) override;
+  void watch_cycle() override;
+  void watch_time() override;
+  void begin_phase() override;
+  void advance_phase() override;
+  void fill(std::span<AxisFeedback> feedback) const override;
+  void send_cycle(const Targets& targets) override;
+  void keep_alive() override { send_heartbeat_if_older(params_.master_heartbeat_us); }
+  void begin_stop(StopKind kind) override;
+  bool offer_target(int axis, const AxisTarget& target) override;
+  void accept_offered() override;
+  bool skips_listening() const override { return is_speaking_; }
+
   void advance_configuration();
   void finish_configuration();
   void advance_starting();
@@ -50,33 +44,16 @@ class Cia402Bus final : public ServoBus {
   void advance_enabling();
   void advance_disabling();
   void hold();
-  bool is_late() const;
-  bool is_cycling() const;
   bool is_known(std::uint8_t node) const;
-
-  void receive_all();
-  void take(const ReceivedFrame& received);
-  void watch_time();
-  void send_cycle(const Targets& targets);
-  void accept_targets(const Targets& targets);
+  void send_commands(const Targets& targets);
   void send_heartbeat_if_older(std::int64_t age_us);
   void send_to_all(cia402::NmtCommand command);
   void set_goal(cia402::Goal goal);
 
   Cia402Params params_;
-  FaultLog faults_;
-  FlightRecorder* recorder_;
-  BusLine line_;
   std::vector<Cia402Axis> axes_;
   std::array<int, 128> axis_of_node_{};
   std::vector<ObjectIssue> issues_;
-  Capabilities capabilities_;
-
-  std::int64_t now_us_ = 0;
-  BusPhase phase_ = BusPhase::kIdle;
-  BusPhase after_listening_ = BusPhase::kConfiguring;
-  bool has_phase_begun_ = true;
-  std::int64_t phase_since_us_ = 0;
   bool is_starting_ = false;    ///< kConfiguring: objects are done, nodes are being started
   bool is_speaking_ = false;    ///< no other master was heard; the heartbeat runs
   bool was_sync_sent_ = false;  ///< in the last cycle

@@ -8,17 +8,8 @@ namespace can {
 
 using cia402::Goal;
 
-void Cia402Bus::enter(BusPhase phase) {
-  phase_ = phase;
-  has_phase_begun_ = false;  // begins at the next poll, which knows the time
-}
-
-bool Cia402Bus::is_late() const {
-  return now_us_ - phase_since_us_ > params_.walk_timeout_us;
-}
-
 bool Cia402Bus::is_cycling() const {
-  switch (phase_) {
+  switch (phase()) {
     case BusPhase::kIdle:
       return is_speaking_;  // axes that are still configured keep their rhythm
     case BusPhase::kListening:
@@ -32,24 +23,20 @@ bool Cia402Bus::is_cycling() const {
 }
 
 void Cia402Bus::begin_phase() {
-  has_phase_begun_ = true;
-  phase_since_us_ = now_us_;
-  if (recorder_ != nullptr) recorder_->record(now_us_, phase_);
-  switch (phase_) {
-    case BusPhase::kListening:
-      line_.clear();
-      break;
+  switch (phase()) {
     case BusPhase::kConfiguring:
+      is_speaking_ = true;
       is_starting_ = false;
-      capabilities_ = {};
+      claims() = {};
       issues_.clear();
       send_to_all(cia402::NmtCommand::kEnterPreOperational);
-      for (Cia402Axis& axis : axes_) axis.begin_configuration(now_us_);
+      for (Cia402Axis& axis : axes_) axis.begin_configuration(now_us());
       break;
     case BusPhase::kRearming:
-      faults_.clear();  // what the drives said while the bus only listened is about the past
+      is_speaking_ = true;
+      fault_log().clear();  // what the drives said while the bus only listened is about the past
       for (Cia402Axis& axis : axes_) {
-        axis.forget(now_us_);
+        axis.forget(now_us());
         axis.set_fault_reset(true);
       }
       break;
@@ -67,20 +54,8 @@ void Cia402Bus::begin_phase() {
   }
 }
 
-void Cia402Bus::advance() {
-  const bool is_clearing = phase_ == BusPhase::kListening && !has_phase_begun_;
-  if (line_.is_faulted() && phase_ != BusPhase::kFaulted && !is_clearing) {
-    enter(BusPhase::kFaulted);
-  }
-  if (!has_phase_begun_) begin_phase();
-  switch (phase_) {
-    case BusPhase::kListening:
-      if (line_.is_faulted()) return enter(BusPhase::kFaulted);
-      if (!is_speaking_ && now_us_ - phase_since_us_ < params_.listen_us) return;
-      is_speaking_ = true;
-      enter(after_listening_);
-      begin_phase();
-      break;
+void Cia402Bus::advance_phase() {
+  switch (phase()) {
     case BusPhase::kConfiguring:
       is_starting_ ? advance_starting() : advance_configuration();
       break;
@@ -101,8 +76,8 @@ void Cia402Bus::advance() {
 void Cia402Bus::advance_configuration() {
   bool all_done = true;
   for (Cia402Axis& axis : axes_) {
-    while (const auto frame = axis.sdo().next_frame(now_us_)) {
-      if (!line_.send(*frame)) break;  // asked again after the time-out
+    while (const auto frame = axis.sdo().next_frame(now_us())) {
+      if (!line().send(*frame)) break;  // asked again after the time-out
     }
     all_done = all_done && axis.sdo().is_done();
   }
@@ -110,42 +85,42 @@ void Cia402Bus::advance_configuration() {
 }
 
 void Cia402Bus::finish_configuration() {
-  capabilities_ = {true, true, true, true};
+  claims() = {true, true, true, true};
   for (int i = 0; i < num_axes(); ++i) {
     Cia402Axis& axis = axes_[static_cast<std::size_t>(i)];
     const auto issues = axis.sdo().issues();
     issues_.insert(issues_.end(), issues.begin(), issues.end());
-    if (axis.sdo().lacks_hold_on_loss()) capabilities_.hold_on_loss = false;
-    if (!axis.config().has_torque) capabilities_.torque_limit = false;
-    if (!axis.config().absolute_position) capabilities_.absolute_position = false;
+    if (axis.sdo().lacks_hold_on_loss()) claims().hold_on_loss = false;
+    if (!axis.config().has_torque) claims().torque_limit = false;
+    if (!axis.config().absolute_position) claims().absolute_position = false;
     const auto worst = std::find_if(issues.begin(), issues.end(),
                                     [](const ObjectIssue& issue) { return issue.forbids_motion; });
     if (worst != issues.end()) {
-      line_.raise(FaultCause::kConfiguration, i,
-                  static_cast<std::uint32_t>(worst->index) << 8 | worst->subindex);
+      line().raise(FaultCause::kConfiguration, i,
+                   static_cast<std::uint32_t>(worst->index) << 8 | worst->subindex);
     }
   }
-  if (faults_.forbids_enabling()) {
-    capabilities_ = {};
+  if (fault_log().forbids_enabling()) {
+    claims() = {};
     return enter(BusPhase::kIdle);
   }
   send_to_all(cia402::NmtCommand::kStart);
   is_starting_ = true;
-  phase_since_us_ = now_us_;
+  restart_phase_time();
 }
 
 void Cia402Bus::advance_starting() {
   const bool all_running = std::all_of(axes_.begin(), axes_.end(),
                                        [](const Cia402Axis& axis) { return axis.is_running(); });
-  if (all_running && !faults_.forbids_enabling()) {
+  if (all_running && !fault_log().forbids_enabling()) {
     for (Cia402Axis& axis : axes_) axis.finish_configuration();
     return enter(BusPhase::kReady);
   }
-  if (!is_late() && !faults_.forbids_enabling()) return;
+  if (!is_late() && !fault_log().forbids_enabling()) return;
   for (int i = 0; i < num_axes(); ++i) {
-    if (!axes_[static_cast<std::size_t>(i)].is_running()) line_.raise(FaultCause::kSilent, i, 0);
+    if (!axes_[static_cast<std::size_t>(i)].is_running()) line().raise(FaultCause::kSilent, i, 0);
   }
-  capabilities_ = {};
+  claims() = {};
   enter(BusPhase::kIdle);
 }
 
@@ -163,8 +138,8 @@ void Cia402Bus::advance_rearming() {
     Cia402Axis& axis = axes_[static_cast<std::size_t>(i)];
     axis.set_fault_reset(false);
     if (!axis.is_configured()) continue;
-    if (!axis.is_running()) line_.raise(FaultCause::kSilent, i, 0);
-    if (is_failed(axis)) line_.raise(FaultCause::kEnableTimeout, i, axis.status_word());
+    if (!axis.is_running()) line().raise(FaultCause::kSilent, i, 0);
+    if (is_failed(axis)) line().raise(FaultCause::kEnableTimeout, i, axis.status_word());
   }
   enter(all_configured ? BusPhase::kReady : BusPhase::kIdle);
 }
@@ -178,13 +153,13 @@ void Cia402Bus::advance_enabling() {
   const bool all_enabled = std::all_of(axes_.begin(), axes_.end(), [](const Cia402Axis& axis) {
     return axis.state() == DriveState::kOperationEnabled;
   });
-  if (faults_.forbids_enabling()) return hold();
+  if (fault_log().forbids_enabling()) return hold();
   if (all_enabled) return enter(BusPhase::kEnabled);
   if (!is_late()) return;
   for (int i = 0; i < num_axes(); ++i) {
     const Cia402Axis& axis = axes_[static_cast<std::size_t>(i)];
     if (axis.state() != DriveState::kOperationEnabled) {
-      line_.raise(FaultCause::kEnableTimeout, i, axis.status_word());
+      line().raise(FaultCause::kEnableTimeout, i, axis.status_word());
     }
   }
   hold();
@@ -202,7 +177,7 @@ void Cia402Bus::advance_disabling() {
   if (!is_late()) return;
   for (int i = 0; i < num_axes(); ++i) {
     const Cia402Axis& axis = axes_[static_cast<std::size_t>(i)];
-    if (!is_off(axis)) line_.raise(FaultCause::kEnableTimeout, i, axis.status_word());
+    if (!is_off(axis)) line().raise(FaultCause::kEnableTimeout, i, axis.status_word());
   }
   enter(BusPhase::kStopped);
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "base/check.h"
 
@@ -14,7 +13,6 @@ namespace {
 using odrive::AxisState;
 
 constexpr double kTwoPi = 6.283185307179586;
-constexpr int kMaxFramesPerPoll = 1024;
 
 double rev_per_rad(const AxisConfig& axis) {
   return axis.gear / kTwoPi * axis.sign;
@@ -30,23 +28,10 @@ std::optional<std::int16_t> milli(double value) {
 }  // namespace
 
 std::string check(const OdriveParams& params) {
-  if (params.axes.empty() || params.axes.size() > 32) return "1..32 axes";
-  std::set<int> nodes;
+  const std::string problem = check_bus(params);
+  if (!problem.empty()) return problem;
   for (const AxisConfig& axis : params.axes) {
-    const std::string problem = check(axis);
-    if (!problem.empty()) return "node " + std::to_string(axis.node_id) + ": " + problem;
     if (axis.node_id > odrive::kMaxNode) return "node_id in 1..63";
-    if (!nodes.insert(axis.node_id).second) return "node_ids differ";
-  }
-  if (params.cycle_us < 1000 || params.listen_us < 0 || params.walk_timeout_us <= 0) {
-    return "cycle_us >= 1000, listen_us >= 0, walk_timeout_us > 0";
-  }
-  if (params.drive_lost_ms < 1 || params.max_missed_cycles < 1) {
-    return "drive_lost_ms >= 1 and max_missed_cycles >= 1";
-  }
-  if (params.line.max_stalled_cycles < 1 || params.line.max_malformed_per_s < 1 ||
-      params.line.max_malformed_per_s > 31) {
-    return "max_stalled_cycles >= 1 and max_malformed_per_s in 1..31";
   }
   if (!(params.torque_constant_Nm_A > 0.0 && std::isfinite(params.torque_constant_Nm_A))) {
     return "torque_constant_Nm_A > 0";
@@ -55,10 +40,7 @@ std::string check(const OdriveParams& params) {
 }
 
 OdriveBus::OdriveBus(const OdriveParams& params, Transport& transport, FlightRecorder* recorder)
-    : params_(params),
-      faults_(static_cast<int>(params.axes.size())),
-      recorder_(recorder),
-      line_(transport, faults_, recorder, params.line) {
+    : PhasedBus(params, transport, recorder), params_(params) {
   CHECK(check(params).empty(), "the parameters were checked by the caller");
   axis_of_node_.fill(-1);
   axes_.resize(params.axes.size());
@@ -68,54 +50,8 @@ OdriveBus::OdriveBus(const OdriveParams& params, Transport& transport, FlightRec
   }
 }
 
-bool OdriveBus::configure() {
-  if (phase_ != BusPhase::kIdle && phase_ != BusPhase::kReady) return false;
-  after_listening_ = BusPhase::kConfiguring;
-  enter(BusPhase::kListening);
-  return true;
-}
-
-bool OdriveBus::rearm() {
-  if (phase_ == BusPhase::kListening || phase_ == BusPhase::kConfiguring) return false;
-  after_listening_ = BusPhase::kRearming;
-  enter(BusPhase::kListening);
-  return true;
-}
-
-bool OdriveBus::enable() {
-  if (phase_ != BusPhase::kReady && phase_ != BusPhase::kStopped) return false;
-  if (faults_.forbids_enabling()) return false;
-  enter(BusPhase::kEnabling);
-  return true;
-}
-
-bool OdriveBus::disable() {
-  if (phase_ != BusPhase::kEnabling && phase_ != BusPhase::kEnabled &&
-      phase_ != BusPhase::kStopped) {
-    return false;
-  }
-  enter(BusPhase::kDisabling);
-  return true;
-}
-
-bool OdriveBus::stop(StopKind kind) {
-  switch (phase_) {
-    case BusPhase::kIdle:
-    case BusPhase::kListening:
-    case BusPhase::kConfiguring:
-    case BusPhase::kFaulted:
-      return false;
-    default:
-      break;
-  }
+void OdriveBus::begin_stop(StopKind kind) {
   if (kind == StopKind::kTorqueOff) request(AxisState::kIdle);
-  enter(BusPhase::kStopped);
-  return true;
-}
-
-void OdriveBus::enter(BusPhase phase) {
-  phase_ = phase;
-  has_phase_begun_ = false;
 }
 
 void OdriveBus::request(AxisState state) {
@@ -126,39 +62,12 @@ void OdriveBus::request(AxisState state) {
 }
 
 void OdriveBus::begin_phase() {
-  has_phase_begun_ = true;
-  phase_since_us_ = now_us_;
-  if (recorder_ != nullptr) recorder_->record(now_us_, phase_);
-  switch (phase_) {
-    case BusPhase::kListening:
-      line_.clear();
-      break;
+  switch (phase()) {
     case BusPhase::kConfiguring:
-      is_configured_ = false;
-      capabilities_ = {};
-      for (Axis& axis : axes_) {
-        const double velocity =
-            axis.config.max_velocity_rad_s * std::fabs(rev_per_rad(axis.config));
-        line_.send(encode(odrive::ControllerMode{axis.config.node_id}));
-        const auto limits = encode(odrive::Limits{axis.config.node_id, static_cast<float>(velocity),
-                                                  static_cast<float>(axis.config.max_current_A)});
-        if (limits) line_.send(*limits);
-        axis.has_heartbeat = false;
-        axis.has_position = false;
-      }
+      configure_axes();
       break;
     case BusPhase::kRearming:
-      faults_.clear();  // what the motors said while the bus only listened is about the past
-      is_configured_ = false;
-      for (Axis& axis : axes_) {
-        line_.send(odrive::encode_clear_errors(axis.config.node_id));
-        axis.wanted = axis.reported;  // a motor that still holds goes on holding
-        axis.expects_torque = false;
-        axis.has_heartbeat = false;
-        axis.has_position = false;
-        axis.num_missed = 0;
-        axis.heartbeat_us = now_us_;
-      }
+      forget_axes();
       break;
     case BusPhase::kEnabling:
       request(AxisState::kClosedLoopControl);
@@ -171,8 +80,36 @@ void OdriveBus::begin_phase() {
   }
 }
 
+void OdriveBus::configure_axes() {
+  is_configured_ = false;
+  claims() = {};
+  for (Axis& axis : axes_) {
+    const double velocity = axis.config.max_velocity_rad_s * std::fabs(rev_per_rad(axis.config));
+    line().send(encode(odrive::ControllerMode{axis.config.node_id}));
+    const auto limits = encode(odrive::Limits{axis.config.node_id, static_cast<float>(velocity),
+                                              static_cast<float>(axis.config.max_current_A)});
+    if (limits) line().send(*limits);
+    axis.has_heartbeat = false;
+    axis.has_position = false;
+  }
+}
+
+void OdriveBus::forget_axes() {
+  fault_log().clear();  // what the motors said while the bus only listened is about the past
+  is_configured_ = false;
+  for (Axis& axis : axes_) {
+    line().send(odrive::encode_clear_errors(axis.config.node_id));
+    axis.wanted = axis.reported;  // a motor that still holds goes on holding
+    axis.expects_torque = false;
+    axis.has_heartbeat = false;
+    axis.has_position = false;
+    axis.num_missed = 0;
+    axis.heartbeat_us = now_us();
+  }
+}
+
 bool OdriveBus::is_cycling() const {
-  return phase_ == BusPhase::kRearming || (is_configured_ && phase_ != BusPhase::kListening);
+  return phase() == BusPhase::kRearming || (is_configured_ && phase() != BusPhase::kListening);
 }
 
 bool OdriveBus::all_heard() const {
@@ -186,48 +123,14 @@ bool OdriveBus::all_in(AxisState state) const {
                      [state](const Axis& axis) { return axis.reported == state; });
 }
 
-void OdriveBus::advance() {
-  const bool is_clearing = phase_ == BusPhase::kListening && !has_phase_begun_;
-  if (line_.is_faulted() && phase_ != BusPhase::kFaulted && !is_clearing) {
-    enter(BusPhase::kFaulted);
-  }
-  if (!has_phase_begun_) begin_phase();
-  switch (phase_) {
-    case BusPhase::kListening:
-      if (line_.is_faulted()) return enter(BusPhase::kFaulted);
-      if (now_us_ - phase_since_us_ >= params_.listen_us) enter(after_listening_);
-      break;
+void OdriveBus::advance_phase() {
+  switch (phase()) {
     case BusPhase::kConfiguring:
     case BusPhase::kRearming:
-      if (all_heard()) {
-        is_configured_ = true;
-        capabilities_.absolute_position =
-            std::all_of(axes_.begin(), axes_.end(),
-                        [](const Axis& axis) { return axis.config.absolute_position; });
-        enter(BusPhase::kReady);
-      } else if (is_late()) {
-        for (int i = 0; i < num_axes(); ++i) {
-          const Axis& axis = axes_[static_cast<std::size_t>(i)];
-          if (axis.error != 0) line_.raise(FaultCause::kEmergency, i, axis.error);
-          if (!axis.has_heartbeat || !axis.has_position) line_.raise(FaultCause::kSilent, i, 0);
-        }
-        enter(BusPhase::kIdle);
-      }
+      advance_listening_to_axes();
       break;
     case BusPhase::kEnabling:
-      if (faults_.forbids_enabling()) return enter(BusPhase::kStopped);
-      if (all_in(AxisState::kClosedLoopControl)) {
-        for (Axis& axis : axes_) axis.expects_torque = true;
-        enter(BusPhase::kEnabled);
-      } else if (is_late()) {
-        for (int i = 0; i < num_axes(); ++i) {
-          const Axis& axis = axes_[static_cast<std::size_t>(i)];
-          if (axis.reported != axis.wanted) {
-            line_.raise(FaultCause::kEnableTimeout, i, static_cast<std::uint32_t>(axis.reported));
-          }
-        }
-        enter(BusPhase::kStopped);
-      }
+      advance_enabling();
       break;
     case BusPhase::kDisabling:
       if (all_in(AxisState::kIdle) || is_late()) enter(BusPhase::kReady);
@@ -237,31 +140,59 @@ void OdriveBus::advance() {
   }
 }
 
-void OdriveBus::receive_all() {
-  ReceivedFrame received;
-  for (int i = 0; i < kMaxFramesPerPoll && line_.receive(received); ++i) {
-    const CanFrame& frame = received.frame;
-    if (odrive::is_master_frame(frame)) {
-      line_.raise(FaultCause::kForeignMaster, -1, frame.id);
-      continue;
-    }
-    const int index = frame.id <= 0x7FF ? axis_of_node_[odrive::node_of(frame.id)] : -1;
-    if (index < 0 || !take(axes_[static_cast<std::size_t>(index)], index, frame)) {
-      line_.count_malformed();
-    }
+void OdriveBus::advance_listening_to_axes() {
+  if (all_heard()) {
+    is_configured_ = true;
+    claims().absolute_position = std::all_of(
+        axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.config.absolute_position; });
+    return enter(BusPhase::kReady);
+  }
+  if (!is_late()) return;
+  for (int i = 0; i < num_axes(); ++i) {
+    const Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (axis.error != 0) line().raise(FaultCause::kEmergency, i, axis.error);
+    if (!axis.has_heartbeat || !axis.has_position) line().raise(FaultCause::kSilent, i, 0);
+  }
+  enter(BusPhase::kIdle);
+}
+
+void OdriveBus::advance_enabling() {
+  if (fault_log().forbids_enabling()) return enter(BusPhase::kStopped);
+  if (all_in(AxisState::kClosedLoopControl)) {
+    for (Axis& axis : axes_) axis.expects_torque = true;
+    return enter(BusPhase::kEnabled);
+  }
+  if (!is_late()) return;
+  for (int i = 0; i < num_axes(); ++i) {
+    const Axis& axis = axes_[static_cast<std::size_t>(i)];
+    if (axis.reported == axis.wanted) continue;
+    line().raise(FaultCause::kEnableTimeout, i, static_cast<std::uint32_t>(axis.reported));
+  }
+  enter(BusPhase::kStopped);
+}
+
+void OdriveBus::take(const ReceivedFrame& received) {
+  const CanFrame& frame = received.frame;
+  if (odrive::is_master_frame(frame)) {
+    line().raise(FaultCause::kForeignMaster, -1, frame.id);
+    return;
+  }
+  const int index = frame.id <= 0x7FF ? axis_of_node_[odrive::node_of(frame.id)] : -1;
+  if (index < 0 || !take(axes_[static_cast<std::size_t>(index)], index, frame)) {
+    line().count_malformed();
   }
 }
 
 bool OdriveBus::take(Axis& axis, int index, const CanFrame& frame) {
   if (const auto heartbeat = odrive::decode_heartbeat(frame)) {
     axis.has_heartbeat = true;
-    axis.heartbeat_us = now_us_;
+    axis.heartbeat_us = now_us();
     axis.error = heartbeat->axis_error;
     axis.reported = static_cast<AxisState>(heartbeat->axis_state);
     if (!is_configured_) return true;
-    if (axis.error != 0) line_.raise(FaultCause::kEmergency, index, axis.error);
+    if (axis.error != 0) line().raise(FaultCause::kEmergency, index, axis.error);
     if (axis.expects_torque && axis.reported != AxisState::kClosedLoopControl) {
-      line_.raise(FaultCause::kLeftOperationEnabled, index, heartbeat->axis_state);
+      line().raise(FaultCause::kLeftOperationEnabled, index, heartbeat->axis_state);
       axis.wanted = axis.reported;  // never enabled again by itself
     }
     return true;
@@ -282,21 +213,25 @@ bool OdriveBus::take(Axis& axis, int index, const CanFrame& frame) {
   return false;
 }
 
-void OdriveBus::watch(bool is_cycle) {
+void OdriveBus::watch_cycle() {
+  if (!is_configured_) return;
+  for (Axis& axis : axes_) {
+    axis.num_missed = axis.is_fresh ? 0 : axis.num_missed + 1;
+    axis.was_fresh = axis.is_fresh;
+    axis.is_fresh = false;
+  }
+}
+
+void OdriveBus::watch_time() {
   if (!is_configured_) return;
   for (int i = 0; i < num_axes(); ++i) {
-    Axis& axis = axes_[static_cast<std::size_t>(i)];
-    if (is_cycle) {
-      axis.num_missed = axis.is_fresh ? 0 : axis.num_missed + 1;
-      axis.was_fresh = axis.is_fresh;
-      axis.is_fresh = false;
-    }
+    const Axis& axis = axes_[static_cast<std::size_t>(i)];
     if (axis.num_missed >= params_.max_missed_cycles) {
-      line_.raise(FaultCause::kSilent, i, static_cast<std::uint32_t>(axis.num_missed));
+      line().raise(FaultCause::kSilent, i, static_cast<std::uint32_t>(axis.num_missed));
     }
-    const std::int64_t silent_ms = (now_us_ - axis.heartbeat_us) / 1000;
+    const std::int64_t silent_ms = (now_us() - axis.heartbeat_us) / 1000;
     if (silent_ms > params_.drive_lost_ms) {
-      line_.raise(FaultCause::kHeartbeatLost, i, static_cast<std::uint32_t>(silent_ms));
+      line().raise(FaultCause::kHeartbeatLost, i, static_cast<std::uint32_t>(silent_ms));
     }
   }
 }
@@ -324,68 +259,26 @@ void OdriveBus::fill(std::span<AxisFeedback> feedback) const {
   }
 }
 
-void OdriveBus::poll(std::int64_t now_us) {
-  now_us_ = now_us;
-  line_.begin_poll(now_us);
-  receive_all();
-  watch(false);
-  advance();
-}
-
-void OdriveBus::exchange(std::int64_t now_us, const Targets& targets,
-                         std::span<AxisFeedback> feedback) {
-  CHECK(feedback.size() == axes_.size(), "one feedback per axis");
-  now_us_ = now_us;
-  line_.begin_poll(now_us);
-  const bool may_send = is_cycling() && line_.begin_cycle();
-  receive_all();
-  watch(true);
-  advance();
-  fill(feedback);
-  if (!may_send || !is_cycling()) return;
-  send_cycle(targets);
-  line_.end_cycle();
-  if (line_.is_faulted()) advance();
-}
-
 void OdriveBus::send_cycle(const Targets& targets) {
-  if (phase_ == BusPhase::kEnabled && has_phase_begun_) accept_targets(targets);
+  take_targets(targets);
   for (Axis& axis : axes_) {
     if (!axis.has_position) continue;
     const bool holds = axis.wanted == AxisState::kClosedLoopControl;
     // The target first: a motor that is armed finds it standing where it is.
     if (holds) {
       const auto frame = encode(axis.command);
-      if (frame && !line_.send(*frame)) return;
+      if (frame && !line().send(*frame)) return;
     }
-    const bool may_request = axis.wanted == AxisState::kIdle ? phase_ != BusPhase::kReady
-                                                             : phase_ == BusPhase::kEnabling;
+    const bool may_request = axis.wanted == AxisState::kIdle ? phase() != BusPhase::kReady
+                                                             : phase() == BusPhase::kEnabling;
     if (axis.wanted != axis.reported && axis.error == 0 && may_request) {
-      if (!line_.send(encode(odrive::SetAxisState{axis.config.node_id, axis.wanted}))) return;
+      if (!line().send(encode(odrive::SetAxisState{axis.config.node_id, axis.wanted}))) return;
     }
   }
 }
 
-void OdriveBus::accept_targets(const Targets& targets) {
-  CHECK(targets.axes.size() == axes_.size(), "one target per axis while enabled");
-  const std::int64_t age_us = now_us_ - targets.time_us;
-  if (!(age_us >= 0 && age_us <= 2 * params_.cycle_us)) {
-    line_.raise(FaultCause::kTargetRefused, -1, 0);
-    return;
-  }
-  bool all_sound = true;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (offer(axes_[i], targets.axes[i])) continue;
-    line_.raise(FaultCause::kTargetRefused, static_cast<int>(i), 0);
-    all_sound = false;
-  }
-  if (!all_sound) return;
-  for (Axis& axis : axes_) {
-    if (axis.wanted == AxisState::kClosedLoopControl) axis.command = axis.offered;
-  }
-}
-
-bool OdriveBus::offer(Axis& axis, const AxisTarget& target) const {
+bool OdriveBus::offer_target(int index, const AxisTarget& target) {
+  Axis& axis = axes_[static_cast<std::size_t>(index)];
   const AxisConfig& config = axis.config;
   const auto position =
       static_cast<float>((target.position_rad - config.offset_rad) * rev_per_rad(config));
@@ -396,6 +289,12 @@ bool OdriveBus::offer(Axis& axis, const AxisTarget& target) const {
   }
   axis.offered = {config.node_id, position, *velocity, *torque};
   return true;
+}
+
+void OdriveBus::accept_offered() {
+  for (Axis& axis : axes_) {
+    if (axis.wanted == AxisState::kClosedLoopControl) axis.command = axis.offered;
+  }
 }
 
 }  // namespace can
