@@ -2,6 +2,7 @@
 #include "can/phased_bus.h"
 
 #include <set>
+#include <utility>
 
 #include "base/check.h"
 
@@ -104,18 +105,21 @@ void PhasedBus::poll(std::int64_t now_us) {
   keep_alive();
 }
 
-void PhasedBus::exchange(std::int64_t now_us, const Targets& targets,
-                         std::span<AxisFeedback> feedback) {
+void PhasedBus::begin_cycle(std::int64_t now_us, std::span<AxisFeedback> feedback) {
   CHECK(static_cast<int>(feedback.size()) == num_axes(), "one feedback per axis");
   now_us_ = now_us;
   line_.begin_poll(now_us);
   // Before anything of this cycle is handed over: has the last cycle left?
-  const bool may_send = is_cycling() && line_.begin_cycle();
+  may_send_ = is_cycling() && line_.begin_cycle();
   receive_all();
   watch_cycle();
   watch_time();
   advance();
   fill(feedback);
+}
+
+void PhasedBus::end_cycle(const Targets& targets) {
+  const bool may_send = std::exchange(may_send_, false);
   if (!may_send || !is_cycling()) return keep_alive();
   send_cycle(targets);
   line_.end_cycle();

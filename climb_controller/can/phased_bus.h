@@ -40,8 +40,8 @@ class PhasedBus : public ServoBus {
   bool stop(StopKind kind) final;
   bool rearm() final;
   void poll(std::int64_t now_us) final;
-  void exchange(std::int64_t now_us, const Targets& targets,
-                std::span<AxisFeedback> feedback) final;
+  void begin_cycle(std::int64_t now_us, std::span<AxisFeedback> feedback) final;
+  void end_cycle(const Targets& targets) final;
 
   /// Frames with a wrong length, identifier or format since construction.
   std::uint64_t num_malformed() const { return line_.num_malformed(); }
@@ -92,6 +92,7 @@ class PhasedBus : public ServoBus {
   BusLine line_;
   Capabilities capabilities_;
   std::int64_t now_us_ = 0;
+  bool may_send_ = false;  ///< in this cycle: the last one has left
   BusPhase phase_ = BusPhase::kIdle;
   BusPhase after_listening_ = BusPhase::kConfiguring;
   bool has_phase_begun_ = true;

@@ -74,7 +74,7 @@ const char* name(DriveState state);
 /// The last known state of one axis; NaN = never heard.
 struct AxisFeedback {
   DriveState state = DriveState::kUnknown;
-  bool fresh = false;     ///< heard since the last exchange
+  bool fresh = false;     ///< heard since the cycle before
   int missed_cycles = 0;  ///< cycles in a row without its state frame
   double position_rad = std::numeric_limits<double>::quiet_NaN();
   double torque_Nm = std::numeric_limits<double>::quiet_NaN();
@@ -129,10 +129,19 @@ class ServoBus {
   /// Receives and does what is due by time. As often as wanted between cycles.
   virtual void poll(std::int64_t now_us) = 0;
 
-  /// One cycle: poll, send targets (if enabled), then SYNC; `feedback` gets every axis' last state.
-  /// Spans hold num_axes() elements; targets.axes may be empty while not enabled.
-  virtual void exchange(std::int64_t now_us, const Targets& targets,
-                        std::span<AxisFeedback> feedback) = 0;
+  /// One cycle = begin_cycle(), then end_cycle(); between them targets are computed from what has
+  /// just been heard and requests made, so that a reaction leaves in the cycle of its cause.
+  /// begin_cycle: poll; `feedback` gets every axis' last state. end_cycle: send targets (if
+  /// enabled), then SYNC. Spans hold num_axes() elements; targets.axes may be empty while not
+  /// enabled.
+  virtual void begin_cycle(std::int64_t now_us, std::span<AxisFeedback> feedback) = 0;
+  virtual void end_cycle(const Targets& targets) = 0;
+
+  /// A whole cycle with targets from before.
+  void exchange(std::int64_t now_us, const Targets& targets, std::span<AxisFeedback> feedback) {
+    begin_cycle(now_us, feedback);
+    end_cycle(targets);
+  }
 };
 
 }  // namespace can
