@@ -140,7 +140,9 @@ bool Controller::obey(Order order) {
       if (state_ == S::kClimbing) return finishing_ = true;
       return moving_limb() == nullptr && take(E::kHold);
     case Order::kReset:
-      return (faults_ & forbidding_reset() & ~kForgottenByReset) == 0 && take(E::kReset);
+      if ((faults_ & forbidding_reset() & ~kForgottenByReset) != 0) return false;
+      // Without power nothing is latched here, but a reset has brought the bus back.
+      return group_of(state_) == StateGroup::kUnpowered || take(E::kReset);
     case Order::kDisarm:
       return (!was_docked_ || params_.power_off_holds) && take(E::kDisarm);
   }
