@@ -312,6 +312,7 @@ LimbInput Controller::limb_input(const ControllerInput& input, Leg leg) const {
   }
   const AxisReading& jaw = input.axes[axis_of(leg, kJaw)];
   limb.claw = {input.touch[leg], jaw.position_rad, jaw.torque_Nm};
+  limb.T_odom_body = odometry_.estimate().T_odom_body();
   limb.dt_s = params_.gate.period_s;
   return limb;
 }

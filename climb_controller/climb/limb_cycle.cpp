@@ -96,7 +96,7 @@ void LimbCycle::enter(LimbState from) {
       jaw_goal_rad_ = claw_.closed_rad;
       return;
     case S::kVerify:
-      pulled_from_m_ = kinematics_.foot_m(leg_, input_.angles_rad);
+      pulled_from_m_ = input_.T_odom_body * kinematics_.foot_m(leg_, input_.angles_rad);
       torques_before_Nm_ = input_.torques_Nm;
       return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m),
                        motion_.pull_test_m * 1.875 / motion_.pull_s);
@@ -207,7 +207,8 @@ void LimbCycle::finish_closing(const LimbInput& input) {
 }
 
 void LimbCycle::finish_pull(const LimbInput& input) {
-  const Eigen::Vector3d moved_m = kinematics_.foot_m(leg_, input.angles_rad) - pulled_from_m_;
+  const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
+  const Eigen::Vector3d moved_m = kinematics_.foot_m(leg_, input.angles_rad) - from_m;
   // tau = -J^T f of the rung on the foot: the change since the pull began.
   const Eigen::Matrix3d J = kinematics_.jacobian(leg_, input.angles_rad);
   const LegAngles change_Nm = input.torques_Nm - torques_before_Nm_;

@@ -6,6 +6,8 @@
 
 #include <optional>
 
+#include <Eigen/Geometry>
+
 #include "climb/foot_line.h"
 #include "climb/grasp_confirmation.h"
 #include "climb/limb_state.h"
@@ -24,6 +26,8 @@ struct LimbInput {
   LegAngles angles_rad = LegAngles::Zero();  ///< measured
   LegAngles torques_Nm = LegAngles::Zero();
   ClawReading claw;
+  /// By the other feet: on the ladder the body gives way when this one pulls.
+  Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
   bool stop = false;  ///< slow down along the path and stand
   double dt_s = 0.01;
 };
@@ -118,7 +122,7 @@ class LimbCycle {
   bool failed_ = false;
   bool is_jaw_forced_ = false;
   GraspWitness last_witness_;
-  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();  ///< odom
   LegAngles torques_before_Nm_ = LegAngles::Zero();
 };
 

@@ -9,6 +9,7 @@ namespace {
 constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
+constexpr double kMaxCentring_m = 0.02;  ///< in one body shift
 
 double height_m(const RungView& rung) {
   return 0.5 * (rung.end0_m.z() + rung.end1_m.z());
@@ -60,10 +61,22 @@ PlannedStep StepPlanner::next(bool upwards, bool shifted, const RobotNow& now,
     query.held[leg] = {leg != step.leg, query.T_odom_body * held_m};
   }
   query.next_shift_m = query.T_odom_body.linear() * along_body;
-  if (!shifted) query.T_odom_body.pretranslate(query.next_shift_m);
+  const Eigen::Vector3d shift_body = along_body + centring_m(now);
+  if (!shifted) query.T_odom_body.pretranslate(query.T_odom_body.linear() * shift_body);
   PlannedStep chosen = choose(query, now, ladder);
-  chosen.shift_m = shifted ? Eigen::Vector3d::Zero() : along_body;
+  chosen.shift_m = shifted ? Eigen::Vector3d::Zero() : shift_body;
   return chosen;
+}
+
+Eigen::Vector3d StepPlanner::centring_m(const RobotNow& now) const {
+  // Each pull test draws the body a little towards the ladder.
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
+  for (const Leg leg : kLegs) {
+    middle_m += kinematics_.foot_m(leg, now.stance.angles_rad[leg]) / kNumLegs;
+  }
+  const double out_m = middle_m.z() + params_.motion.stand_off_m;
+  return {0.0, std::clamp(middle_m.y(), -kMaxCentring_m, kMaxCentring_m),
+          std::clamp(out_m, -kMaxCentring_m, kMaxCentring_m)};
 }
 
 PlannedStep StepPlanner::choose(GraspQuery query, const RobotNow& now, const LadderView& ladder) {

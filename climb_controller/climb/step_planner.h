@@ -40,6 +40,8 @@ class StepPlanner {
 
  private:
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
+  /// Body shift that brings the body back to its stand-off and between its feet, body frame.
+  Eigen::Vector3d centring_m(const RobotNow& now) const;
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;
 
