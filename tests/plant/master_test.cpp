@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "can/cia402_bus.h"
-#include "memory_transport.h"
+#include "robot_in_a_box/memory_transport.h"
 #include "simulator/plant/monitor.h"
 #include "simulator/plant/robot_plant.h"
 
@@ -76,7 +76,7 @@ struct MasterBench {
 
   MemoryBus bus;
   RobotPlant plant;
-  MemoryTransport transport;
+  robot_in_a_box::MemoryTransport transport;
   Monitor monitor;
   can::Cia402Bus master;
   std::vector<can::AxisFeedback> feedback;
