@@ -28,7 +28,8 @@ struct LineParams {
 };
 
 struct LinesParams {
-  std::string chip = "ladder";  ///< label as `gpiodetect` shows it, or "unix:PATH" (a line hub)
+  std::string chip =
+      "ladder-gpio";  ///< label as `gpiodetect` shows it, or "unix:PATH" (a line hub)
   /// Their 30 ms filter is the grasp confirmation's; here they pass as they are.
   std::array<LineParams, kNumTouch> touch = {LineParams{"TOUCH_FL"}, LineParams{"TOUCH_FR"},
                                              LineParams{"TOUCH_RL"}, LineParams{"TOUCH_RR"}};

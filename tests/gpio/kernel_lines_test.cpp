@@ -67,7 +67,7 @@ struct WiredChips : Chips {
 
 Wires ladder_chip() {
   Wires wires;
-  wires.label = "ladder";
+  wires.label = "ladder-gpio";
   wires.lines = {{"", false, ""},         {"TOUCH_FL", false, ""}, {"TOUCH_FR", false, ""},
                  {"TOUCH_RL", false, ""}, {"TOUCH_RR", false, ""}, {"ESTOP_N", false, ""},
                  {"LED", true, "blinky"}, {"", false, ""}};
@@ -89,7 +89,7 @@ struct KernelLinesTest : testing::Test {
 TEST_F(KernelLinesTest, NoChip) {
   params.chip = "robot";
   EXPECT_THAT(open(), AllOf(HasSubstr("no GPIO chip is labelled \"robot\""),
-                            HasSubstr("\"soc\" (/dev/gpiochip0), \"ladder\" (/dev/gpiochip1)"),
+                            HasSubstr("\"soc\" (/dev/gpiochip0), \"ladder-gpio\" (/dev/gpiochip1)"),
                             HasSubstr("gpio.chip")));
   ladder().open_error = EACCES;
   EXPECT_THAT(open(), AllOf(HasSubstr("/dev/gpiochip1 cannot be opened: Permission denied"),
@@ -101,14 +101,14 @@ TEST_F(KernelLinesTest, NoChip) {
 // Two chips with one label: neither is guessed.
 TEST_F(KernelLinesTest, TwoChipsOfOneLabel) {
   chips.by_path["/dev/gpiochip4"] = ladder_chip();
-  EXPECT_THAT(open(), AllOf(HasSubstr("two GPIO chips are labelled \"ladder\""),
+  EXPECT_THAT(open(), AllOf(HasSubstr("two GPIO chips are labelled \"ladder-gpio\""),
                             HasSubstr("/dev/gpiochip1 and /dev/gpiochip4")));
 }
 
 // A name that the chip does not have, or has twice, or an offset beyond its end.
 TEST_F(KernelLinesTest, LineNotFound) {
   params.estop.name = "STOP";
-  EXPECT_THAT(open(), AllOf(HasSubstr("\"ladder\" (/dev/gpiochip1) has no line named STOP"),
+  EXPECT_THAT(open(), AllOf(HasSubstr("\"ladder-gpio\" (/dev/gpiochip1) has no line named STOP"),
                             HasSubstr("gpioinfo")));
   params.estop.name = "";
   params.estop.offset = 8;
@@ -123,14 +123,15 @@ TEST_F(KernelLinesTest, LineNotFound) {
 // One wire cannot be two switches, once by name and once by offset.
 TEST_F(KernelLinesTest, OneWireTwice) {
   params.touch[0] = {"", 5};
-  EXPECT_THAT(open(), HasSubstr("line 5 of GPIO chip \"ladder\" (/dev/gpiochip1) is configured "
-                                "twice"));
+  EXPECT_THAT(open(),
+              HasSubstr("line 5 of GPIO chip \"ladder-gpio\" (/dev/gpiochip1) is configured "
+                        "twice"));
 }
 
 // A line that another program holds: which, where, by whom, and what to do.
 TEST_F(KernelLinesTest, BusyLine) {
   ladder().lines[5] = {"ESTOP_N", true, "gpiomon"};
-  EXPECT_THAT(open(), AllOf(HasSubstr("line ESTOP_N at offset 5 of GPIO chip \"ladder\" "
+  EXPECT_THAT(open(), AllOf(HasSubstr("line ESTOP_N at offset 5 of GPIO chip \"ladder-gpio\" "
                                       "(/dev/gpiochip1) is held by \"gpiomon\""),
                             HasSubstr("end that program")));
 }
@@ -179,7 +180,7 @@ TEST_F(KernelLinesTest, ComesBackUnderAnotherNumber) {
   EXPECT_EQ(lines.read(levels), ReadStatus::kLost);
   EXPECT_EQ(lines.read(levels), ReadStatus::kLost) << "and stays so until it is opened";
   EXPECT_EQ(lines.wake_fd(), -1);
-  EXPECT_EQ(lines.loss(), "GPIO chip \"ladder\" (/dev/gpiochip1) has gone");
+  EXPECT_EQ(lines.loss(), "GPIO chip \"ladder-gpio\" (/dev/gpiochip1) has gone");
   chips.by_path.erase("/dev/gpiochip1");
   EXPECT_NE(lines.open(), "");
   chips.by_path["/dev/gpiochip7"] = ladder_chip();
