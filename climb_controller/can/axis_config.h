@@ -24,7 +24,7 @@ struct AxisConfig {
   int following_error_ms = 50;            ///< 1..65535 (6066h)
   double rated_torque_Nm = 20.0;          ///< torque that the drive calls 1000 permille, > 0
   double max_torque_Nm = 30.0;            ///< > 0, <= 65.535 rated (6072h)
-  bool has_torque = true;         ///< 6072h and 6077h exist: 8-byte PDOs; else the 6-byte variants
+  bool has_torque = true;  ///< use 6072h and 6077h where the drive has them; else 6-byte PDOs
   bool absolute_position = true;  ///< position survives loss of power
   double max_current_A = 20.0;    ///< > 0; ODrive only (Set_Limits)
 };

@@ -162,8 +162,11 @@ std::optional<SdoRequest> decode_sdo_request(const CanFrame& frame);
 std::optional<SdoResponse> decode_sdo_response(const CanFrame& frame);
 
 inline constexpr std::uint32_t kAbortTimeout = 0x05040000;
+inline constexpr std::uint32_t kAbortAccess = 0x06010000;
 inline constexpr std::uint32_t kAbortReadOnly = 0x06010002;
 inline constexpr std::uint32_t kAbortNoObject = 0x06020000;
+inline constexpr std::uint32_t kAbortNoSubindex = 0x06090011;
+inline constexpr std::uint32_t kAbortDeviceState = 0x08000022;
 
 /// "object does not exist" for 06020000h; "unknown abort code" for what CiA 301 does not list.
 const char* abort_text(std::uint32_t abort_code);

@@ -12,6 +12,10 @@ namespace can {
 using cia402::Goal;
 using cia402::NmtState;
 
+namespace {
+constexpr Parts kTorqueParts = bit(Part::kTorqueLimit) | bit(Part::kTorqueActual);
+}
+
 Cia402Axis::Cia402Axis(int index, const AxisConfig& config, const Cia402Params& params)
     : config_(config),
       index_(index),
@@ -23,7 +27,17 @@ void Cia402Axis::begin_configuration(std::int64_t now_us) {
   is_under_configuration_ = true;
   network_state_ = NmtState::kPreOperational;
   forget(now_us);
-  sdo_.start(steps_);
+  sdo_.start(steps_, config_.has_torque ? Parts{0} : Parts{kTorqueParts});
+}
+
+void Cia402Axis::finish_configuration() {
+  is_configured_ = true;
+  is_under_configuration_ = false;
+  // Found enabled, by a master before this one: it stops and holds, and follows nobody before
+  // enable(). A drive that would not hold after a quick stop goes on holding as it does.
+  if (state_ == DriveState::kOperationEnabled && !sdo_.lacks(Part::kHoldOnLoss)) {
+    goal_ = Goal::kQuickStop;
+  }
 }
 
 bool Cia402Axis::is_running() const {
@@ -53,15 +67,13 @@ void Cia402Axis::raise(BusLine& line, FaultCause cause, std::uint32_t detail) {
 }
 
 bool Cia402Axis::take(const CanFrame& frame, BusLine& line, std::int64_t now_us) {
-  if (const auto pdo = cia402::decode_tpdo1(frame)) {
-    if (pdo->torque_permille.has_value() != config_.has_torque) return false;
-    take_status(*pdo);
-    return true;
-  }
-  if (const auto pdo = cia402::decode_tpdo2(frame)) {
-    error_code_ = pdo->error_code;
-    digital_inputs_ = pdo->digital_inputs;
-    return true;
+  switch (is_plain(frame) ? cia402::kind_of(frame.id) : cia402::FrameKind::kOther) {
+    case cia402::FrameKind::kTpdo1:
+      return take_tpdo1(frame);
+    case cia402::FrameKind::kTpdo2:
+      return take_tpdo2(frame);
+    default:
+      break;
   }
   if (const auto emergency = cia402::decode_emergency(frame)) {
     take_emergency(*emergency, line);
@@ -76,6 +88,27 @@ bool Cia402Axis::take(const CanFrame& frame, BusLine& line, std::int64_t now_us)
     return true;
   }
   return false;
+}
+
+bool Cia402Axis::knows_layout() const {
+  return is_configured_ || (is_under_configuration_ && sdo_.is_done());
+}
+
+bool Cia402Axis::take_tpdo1(const CanFrame& frame) {
+  if (!knows_layout()) return true;
+  const auto pdo = cia402::decode_tpdo1(frame);
+  if (!pdo || pdo->torque_permille.has_value() == sdo_.lacks(Part::kTorqueActual)) return false;
+  take_status(*pdo);
+  return true;
+}
+
+bool Cia402Axis::take_tpdo2(const CanFrame& frame) {
+  if (!knows_layout() || sdo_.lacks(Part::kDetails)) return true;
+  const auto pdo = cia402::decode_tpdo2(frame);
+  if (!pdo) return false;
+  error_code_ = pdo->error_code;
+  digital_inputs_ = pdo->digital_inputs;
+  return true;
 }
 
 void Cia402Axis::take_status(const cia402::Tpdo1& pdo) {
@@ -150,8 +183,9 @@ void Cia402Axis::fill(AxisFeedback& feedback) const {
   feedback.digital_inputs = digital_inputs_;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   feedback.position_rad = has_status_ ? rad_from_counts(config_, position_counts_) : kNone;
-  feedback.torque_Nm =
-      has_status_ && config_.has_torque ? Nm_from_permille(config_, torque_permille_) : kNone;
+  feedback.torque_Nm = has_status_ && !sdo_.lacks(Part::kTorqueActual)
+                           ? Nm_from_permille(config_, torque_permille_)
+                           : kNone;
 }
 
 void Cia402Axis::set_goal(Goal goal) {
@@ -190,7 +224,7 @@ cia402::Rpdo1 Cia402Axis::next_rpdo1() {
     control_word_ = cia402::control_word(goal_, state_);
   }  // else: a statusword outside the standard; 00h could drop the limb, so the last word stays
   cia402::Rpdo1 pdo{node(), control_word_, command_.counts, std::nullopt};
-  if (config_.has_torque) pdo.max_torque_permille = command_.max_torque_permille;
+  if (!sdo_.lacks(Part::kTorqueLimit)) pdo.max_torque_permille = command_.max_torque_permille;
   return pdo;
 }
 

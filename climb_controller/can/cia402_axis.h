@@ -25,16 +25,12 @@ class Cia402Axis {
   // --- configuration -----------------------------------------------------------------------------
   void begin_configuration(std::int64_t now_us);
   SdoClient& sdo() { return sdo_; }
-  void finish_configuration() {
-    is_configured_ = true;
-    is_under_configuration_ = false;
-  }
+  void finish_configuration();
   bool is_configured() const { return is_configured_; }
   /// Network state operational and a statusword heard since configuration began.
   bool is_running() const;
 
-  // --- what the drive says. False: not a frame that this axis may send
-  // ----------------------------
+  // --- what the drive says. False: not a frame that this axis may send ---------------------------
   bool take(const CanFrame& frame, BusLine& line, std::int64_t now_us);
 
   /// Deadlines and states, once configured. `expects_frames`: a SYNC went out last cycle.
@@ -45,8 +41,7 @@ class Cia402Axis {
   /// Begins from what the drive says next: state, position as first target, deadlines from now.
   void forget(std::int64_t now_us);
 
-  // --- what it is told
-  // -----------------------------------------------------------------------------
+  // --- what it is told ---------------------------------------------------------------------------
   void set_goal(cia402::Goal goal);
   void set_fault_reset(bool resetting) { is_resetting_ = resetting; }
 
@@ -68,6 +63,10 @@ class Cia402Axis {
     std::int16_t torque_permille = 0;
   };
 
+  /// Else its PDOs are laid out as delivered, or as another master wished: they say nothing.
+  bool knows_layout() const;
+  bool take_tpdo1(const CanFrame& frame);
+  bool take_tpdo2(const CanFrame& frame);
   void take_status(const cia402::Tpdo1& pdo);
   void take_emergency(const cia402::Emergency& emergency, BusLine& line);
   void take_heartbeat(cia402::NmtState state, BusLine& line, std::int64_t now_us);

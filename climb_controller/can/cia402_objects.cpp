@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <optional>
 
 #include "base/check.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 using cia402::Object;
 using Need = ObjectStep::Need;
+using When = ObjectStep::When;
 
 constexpr double kTwoPi = 6.283185307179586;
 constexpr std::uint32_t kPdoOff = 0x80000000;
@@ -37,10 +39,11 @@ class Steps {
     return steps_.emplace_back(step);
   }
 
-  void only_read(Object object, const char* object_name, int num_bytes) {
+  ObjectStep& only_read(Object object, const char* object_name, int num_bytes) {
     ObjectStep& step = add(object, object_name, num_bytes, 0);
     step.write = false;
     step.mask = 0;
+    return step;
   }
 
  private:
@@ -53,22 +56,53 @@ struct Pdo {
   int transmission_type;  ///< 1: with every SYNC, 255: on change and by timer
   const char* name;
   const char* mapping_name;
+  Part part = Part::kNone;  ///< the whole PDO belongs to it and stays off without it
 };
 
-/// CiA 301: switch the PDO off, empty its mapping, fill it, count it, switch the PDO on.
-void add_pdo(Steps& steps, const Pdo& pdo, std::initializer_list<std::uint32_t> mapping) {
+/// The last entry of a PDO, which the drive may lack: the PDO is shorter then.
+struct LastEntry {
+  std::uint32_t entry;
+  Part part;
+};
+
+void belongs_to(ObjectStep& step, Part part, When when = When::kWithPart) {
+  if (part == Part::kNone) return;
+  step.part = part;
+  step.when = when;
+  step.need = Need::kPart;
+}
+
+/// CiA 301: switch the PDO off, empty its mapping, fill it, count it, switch the PDO on. What a
+/// drive does not let change has to be right already.
+void add_pdo(Steps& steps, const Pdo& pdo, std::initializer_list<std::uint32_t> mapping,
+             std::optional<LastEntry> last = std::nullopt) {
   const std::uint16_t communication = pdo.communication;
   const auto map = static_cast<std::uint16_t>(communication + 0x200);
-  steps.add({communication, 1}, pdo.name, 4, pdo.cob_id | kPdoOff).mask = ~kPdoNoRemote;
-  steps.add({communication, 2}, pdo.name, 1, pdo.transmission_type);
-  steps.add({map, 0}, pdo.mapping_name, 1, 0);
+  steps.add({communication, 1}, pdo.name, 4, pdo.cob_id | kPdoOff).need = Need::kMeans;
+  belongs_to(steps.add({communication, 2}, pdo.name, 1, pdo.transmission_type), pdo.part);
+  steps.add({map, 0}, pdo.mapping_name, 1, 0).need = Need::kMeans;
   std::uint8_t subindex = 0;
   for (const std::uint32_t entry : mapping) {
-    steps.add({map, ++subindex}, pdo.mapping_name, 4, entry);
+    belongs_to(steps.add({map, ++subindex}, pdo.mapping_name, 4, entry), pdo.part);
   }
-  steps.add({map, 0}, pdo.mapping_name, 1, subindex);
-  if (pdo.transmission_type == 255) steps.add({communication, 5}, pdo.name, 2, 100);
-  steps.add({communication, 1}, pdo.name, 4, pdo.cob_id).mask = ~kPdoNoRemote;
+  if (last) {
+    const auto long_count = static_cast<std::uint8_t>(subindex + 1);
+    belongs_to(steps.add({map, long_count}, pdo.mapping_name, 4, last->entry), last->part);
+    belongs_to(steps.add({map, 0}, pdo.mapping_name, 1, long_count), last->part);
+  }
+  ObjectStep& count = steps.add({map, 0}, pdo.mapping_name, 1, subindex);
+  if (last) {
+    belongs_to(count, last->part, When::kWithoutPart);
+    count.need = Need::kMotion;
+  } else {
+    belongs_to(count, pdo.part);
+  }
+  if (pdo.transmission_type == 255) {
+    belongs_to(steps.add({communication, 5}, pdo.name, 2, 100), pdo.part);
+  }
+  ObjectStep& on = steps.add({communication, 1}, pdo.name, 4, pdo.cob_id);
+  on.mask = ~kPdoNoRemote;
+  belongs_to(on, pdo.part);
 }
 
 void add_pdos(Steps& steps, const AxisConfig& axis, const Cia402Params& params) {
@@ -76,20 +110,20 @@ void add_pdos(Steps& steps, const AxisConfig& axis, const Cia402Params& params) 
   const Pdo rpdo1{0x1400, 0x200 + node, 1, "RPDO1", "RPDO1 mapping"};
   const Pdo rpdo2{0x1401, 0x300 + node, 1, "RPDO2", "RPDO2 mapping"};
   const Pdo tpdo1{0x1800, 0x180 + node, 1, "TPDO1", "TPDO1 mapping"};
-  const Pdo tpdo2{0x1801, 0x280 + node, 255, "TPDO2", "TPDO2 mapping"};
-  if (axis.has_torque) {
-    add_pdo(steps, rpdo1, {mapped(0x6040, 16), mapped(0x607A, 32), mapped(0x6072, 16)});
-    add_pdo(steps, tpdo1, {mapped(0x6041, 16), mapped(0x6064, 32), mapped(0x6077, 16)});
-  } else {
-    add_pdo(steps, rpdo1, {mapped(0x6040, 16), mapped(0x607A, 32)});
-    add_pdo(steps, tpdo1, {mapped(0x6041, 16), mapped(0x6064, 32)});
-  }
+  const Pdo tpdo2{0x1801, 0x280 + node, 255, "TPDO2", "TPDO2 mapping", Part::kDetails};
+  add_pdo(steps, rpdo1, {mapped(0x6040, 16), mapped(0x607A, 32)},
+          LastEntry{mapped(0x6072, 16), Part::kTorqueLimit});
+  add_pdo(steps, tpdo1, {mapped(0x6041, 16), mapped(0x6064, 32)},
+          LastEntry{mapped(0x6077, 16), Part::kTorqueActual});
   add_pdo(steps, tpdo2, {mapped(0x603F, 16), mapped(0x6061, 8), mapped(0x60FD, 32)});
   if (params.feed_forward) {
     // The last byte is filled by the dummy object 0005h (unsigned8).
     add_pdo(steps, rpdo2,
             {mapped(0x60B1, 32), mapped(0x60B2, 16), mapped(0x6060, 8), mapped(0x0005, 8)});
   }
+  // What else a drive sends as delivered would only be frames that nobody knows.
+  steps.add({0x1802, 1}, "TPDO3", 4, kPdoOff | (0x380 + node)).need = Need::kMeans;
+  steps.add({0x1803, 1}, "TPDO4", 4, kPdoOff | (0x480 + node)).need = Need::kMeans;
   const std::int64_t deadline_ms = params.max_missed_cycles * params.cycle_us / 1000;
   steps.add({0x1400, 5}, "RPDO1 deadline", 2, deadline_ms).need = Need::kOptional;
 }
@@ -106,35 +140,41 @@ void add_motion_limits(Steps& steps, const AxisConfig& axis) {
   CHECK(first && second, "the configuration was checked");
   steps.add({0x607D, 1}, "software position limit, minimum", 4, std::min(*first, *second));
   steps.add({0x607D, 2}, "software position limit, maximum", 4, std::max(*first, *second));
+  // The controller's own gate and watch come before these: a drive may lack them, which is told.
   const double motor_rpm = std::floor(axis.max_velocity_rad_s * axis.gear * 60.0 / kTwoPi);
-  steps.add({0x607F, 0}, "max profile velocity", 4, limit(axis, axis.max_velocity_rad_s));
-  steps.add({0x6080, 0}, "max motor speed", 4,
-            static_cast<std::int64_t>(std::max(1.0, std::min(motor_rpm, 4e9))));
-  steps.add({0x60C5, 0}, "max acceleration", 4, limit(axis, axis.max_acceleration_rad_s2));
-  steps.add({0x6085, 0}, "quick stop deceleration", 4, limit(axis, axis.quick_stop_rad_s2));
-  steps.add({0x6065, 0}, "following error window", 4, limit(axis, axis.following_error_rad));
-  steps.add({0x6066, 0}, "following error time out", 2, axis.following_error_ms);
-  if (axis.has_torque) {
-    const auto permille = limit_permille(axis, axis.max_torque_Nm);
-    CHECK(permille.has_value(), "the configuration was checked");
-    steps.add({0x6072, 0}, "max torque", 2, *permille);
-    steps.only_read({0x6077, 0}, "torque actual value", 2);
-  }
+  const auto add_told = [&](Object object, const char* object_name, int num_bytes,
+                            std::int64_t value) {
+    steps.add(object, object_name, num_bytes, value).need = Need::kTold;
+  };
+  add_told({0x607F, 0}, "max profile velocity", 4, limit(axis, axis.max_velocity_rad_s));
+  add_told({0x6080, 0}, "max motor speed", 4,
+           static_cast<std::int64_t>(std::max(1.0, std::min(motor_rpm, 4e9))));
+  add_told({0x60C5, 0}, "max acceleration", 4, limit(axis, axis.max_acceleration_rad_s2));
+  add_told({0x6085, 0}, "quick stop deceleration", 4, limit(axis, axis.quick_stop_rad_s2));
+  add_told({0x6065, 0}, "following error window", 4, limit(axis, axis.following_error_rad));
+  add_told({0x6066, 0}, "following error time out", 2, axis.following_error_ms);
+  const auto permille = limit_permille(axis, axis.max_torque_Nm);
+  CHECK(permille.has_value(), "the configuration was checked");
+  belongs_to(steps.add({0x6072, 0}, "max torque", 2, *permille), Part::kTorqueLimit);
+  belongs_to(steps.only_read({0x6077, 0}, "torque actual value", 2), Part::kTorqueActual);
+}
+
+/// Every missing object of hold on loss is told, not only the first.
+void holds_on_loss(ObjectStep& step) {
+  belongs_to(step, Part::kHoldOnLoss, When::kAlways);
 }
 
 void add_reactions(Steps& steps, const Cia402Params& params) {
   // Ramp down, then stay in QUICK STOP ACTIVE: torque stays on.
-  steps.add({0x605A, 0}, "quick stop option code", 2, 6).need = Need::kHoldOnLoss;
+  holds_on_loss(steps.add({0x605A, 0}, "quick stop option code", 2, 6));
   // Heartbeat of the master lost, bus off or stopped: quick stop.
-  steps.add({0x6007, 0}, "abort connection option code", 2, 3).need = Need::kHoldOnLoss;
+  holds_on_loss(steps.add({0x6007, 0}, "abort connection option code", 2, 3));
   steps.add({0x605E, 0}, "fault reaction option code", 2, 2);
-  steps
-      .add({0x1016, 1}, "consumer heartbeat time", 4,
-           std::int64_t{cia402::kMasterNode} << 16 | params.master_lost_ms)
-      .need = Need::kHoldOnLoss;
+  holds_on_loss(steps.add({0x1016, 1}, "consumer heartbeat time", 4,
+                          std::int64_t{cia402::kMasterNode} << 16 | params.master_lost_ms));
   steps.add({0x1017, 0}, "producer heartbeat time", 2, params.drive_heartbeat_ms);
-  steps.add({0x1029, 1}, "error behaviour, communication", 1, 1);
-  steps.add({0x1006, 0}, "communication cycle period", 4, params.cycle_us);
+  steps.add({0x1029, 1}, "error behaviour, communication", 1, 1).need = Need::kTold;
+  steps.add({0x1006, 0}, "communication cycle period", 4, params.cycle_us).need = Need::kTold;
 }
 
 }  // namespace
@@ -177,14 +217,16 @@ std::vector<ObjectStep> configuration_of(const AxisConfig& axis, const Cia402Par
                                  static_cast<std::int64_t>(axis.counts_per_rad * kTwoPi + 0.5));
   encoder.write = false;
   encoder.need = Need::kIfPresent;
+  encoder.zero_is_unknown = true;
   add_motion_limits(list, axis);
   add_reactions(list, params);
   add_pdos(list, axis, params);
   std::vector<ObjectStep> steps = list.take();
   for (ObjectStep& step : steps) {
     const auto& accepted = params.optional_objects;
-    if (step.need == Need::kMotion &&
-        std::find(accepted.begin(), accepted.end(), step.object) != accepted.end()) {
+    const bool is_required =
+        step.need == Need::kMotion || step.need == Need::kTold || step.need == Need::kIfPresent;
+    if (is_required && std::find(accepted.begin(), accepted.end(), step.object) != accepted.end()) {
       step.need = Need::kOptional;
     }
   }

@@ -19,7 +19,7 @@ struct Cia402Params : BusParams {
   int master_lost_ms = 150;                      ///< > master heartbeat (1016h)
   int drive_heartbeat_ms = 100;                  ///< > 0 (1017h)
   bool feed_forward = false;                     ///< RPDO2 with velocity and torque each cycle
-  std::vector<cia402::Object> optional_objects;  ///< accepted as absent, though normally required
+  std::vector<cia402::Object> optional_objects;  ///< accepted as they are, absent or other
   SdoClientParams sdo;
 };
 

@@ -27,6 +27,7 @@ void Cia402Bus::begin_phase() {
     case BusPhase::kConfiguring:
       is_speaking_ = true;
       is_starting_ = false;
+      fault_log().clear();  // what the drives said while the bus only listened is about the past
       claims() = {};
       issues_.clear();
       send_to_all(cia402::NmtCommand::kEnterPreOperational);
@@ -90,8 +91,10 @@ void Cia402Bus::finish_configuration() {
     Cia402Axis& axis = axes_[static_cast<std::size_t>(i)];
     const auto issues = axis.sdo().issues();
     issues_.insert(issues_.end(), issues.begin(), issues.end());
-    if (axis.sdo().lacks_hold_on_loss()) claims().hold_on_loss = false;
-    if (!axis.config().has_torque) claims().torque_limit = false;
+    if (axis.sdo().lacks(Part::kHoldOnLoss)) claims().hold_on_loss = false;
+    if (axis.sdo().lacks(Part::kTorqueLimit) || axis.sdo().lacks(Part::kTorqueActual)) {
+      claims().torque_limit = false;
+    }
     if (!axis.config().absolute_position) claims().absolute_position = false;
     const auto worst = std::find_if(issues.begin(), issues.end(),
                                     [](const ObjectIssue& issue) { return issue.forbids_motion; });

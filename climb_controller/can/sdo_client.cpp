@@ -8,14 +8,47 @@ namespace can {
 using cia402::SdoRequest;
 using cia402::SdoResponse;
 
-void SdoClient::start(std::span<const ObjectStep> steps) {
+namespace {
+
+using Need = ObjectStep::Need;
+
+/// The drive says that it has no such object: nothing is known to be wrong with it.
+bool is_absence(std::uint32_t abort_code) {
+  return abort_code == cia402::kAbortNoObject || abort_code == cia402::kAbortNoSubindex;
+}
+
+/// The write was refused because the object cannot be changed, at all or now; its value may be
+/// right all the same.
+bool is_unchangeable(std::uint32_t abort_code) {
+  return abort_code == cia402::kAbortReadOnly || abort_code == cia402::kAbortAccess ||
+         abort_code == cia402::kAbortDeviceState;
+}
+
+bool forbids_motion_by(Need need, const ObjectIssue& issue) {
+  switch (need) {
+    case Need::kMotion:
+    case Need::kIfPresent:
+    case Need::kMeans:
+      return true;
+    case Need::kTold:
+      return issue.kind != ObjectIssue::Kind::kAborted || !is_absence(issue.abort_code);
+    case Need::kPart:
+    case Need::kOptional:
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void SdoClient::start(std::span<const ObjectStep> steps, Parts lost) {
   steps_ = steps;
   step_index_ = 0;
   has_answered_ = false;
-  lacks_hold_on_loss_ = false;
+  lost_ = lost;
   issues_.clear();
   issues_.reserve(steps.size());
-  if (!is_done()) begin_step();
+  begin_step();
 }
 
 bool SdoClient::forbids_motion() const {
@@ -23,7 +56,14 @@ bool SdoClient::forbids_motion() const {
                      [](const ObjectIssue& issue) { return issue.forbids_motion; });
 }
 
+bool SdoClient::is_skipped(const ObjectStep& step) const {
+  return (step.when == ObjectStep::When::kWithPart && lacks(step.part)) ||
+         (step.when == ObjectStep::When::kWithoutPart && !lacks(step.part));
+}
+
 void SdoClient::begin_step() {
+  while (!is_done() && is_skipped(steps_[step_index_])) ++step_index_;
+  if (is_done()) return;
   stage_ = steps_[step_index_].write ? Stage::kWrite : Stage::kRead;
   write_abort_ = 0;
   num_attempts_ = 0;
@@ -32,7 +72,7 @@ void SdoClient::begin_step() {
 
 void SdoClient::finish_step() {
   ++step_index_;
-  if (!is_done()) begin_step();
+  begin_step();
 }
 
 std::optional<CanFrame> SdoClient::next_frame(std::int64_t now_us) {
@@ -73,7 +113,8 @@ void SdoClient::take(const SdoResponse& response) {
     if (response.kind == SdoResponse::Kind::kAbort) write_abort_ = response.value;
     stage_ = Stage::kRead;  // also after an abort: a constant may already be right
   } else if (response.kind == SdoResponse::Kind::kAbort) {
-    if (step.need != ObjectStep::Need::kIfPresent) {
+    const bool is_silent_need = step.need == Need::kIfPresent || step.need == Need::kMeans;
+    if (!is_silent_need) {
       note(ObjectIssue::Kind::kAborted, write_abort_ != 0 ? write_abort_ : response.value, 0);
     }
     finish_step();
@@ -85,10 +126,11 @@ void SdoClient::take(const SdoResponse& response) {
 
 void SdoClient::compare(std::uint32_t found) {
   const ObjectStep& step = steps_[step_index_];
+  if (step.need == Need::kMeans || (step.zero_is_unknown && found == 0)) return;
   const std::uint32_t bits =
       step.num_bytes >= 4 ? step.mask : step.mask & ((1U << 8 * step.num_bytes) - 1U);
   const bool equal = (found & bits) == (step.value & bits);
-  if (write_abort_ != 0 && !(equal && write_abort_ == cia402::kAbortReadOnly)) {
+  if (write_abort_ != 0 && !(equal && is_unchangeable(write_abort_))) {
     note(ObjectIssue::Kind::kAborted, write_abort_, found);
   } else if (!equal) {
     note(ObjectIssue::Kind::kMismatch, 0, found);
@@ -106,9 +148,8 @@ void SdoClient::note(ObjectIssue::Kind kind, std::uint32_t abort_code, std::uint
   issue.abort_code = abort_code;
   issue.wanted = step.value;
   issue.found = found;
-  issue.forbids_motion =
-      step.need == ObjectStep::Need::kMotion || step.need == ObjectStep::Need::kIfPresent;
-  if (step.need == ObjectStep::Need::kHoldOnLoss) lacks_hold_on_loss_ = true;
+  issue.forbids_motion = forbids_motion_by(step.need, issue);
+  if (step.need == Need::kPart) lost_ |= bit(step.part);
   issues_.push_back(issue);
 }
 

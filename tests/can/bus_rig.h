@@ -16,15 +16,17 @@ namespace can {
 class BusRig {
  public:
   explicit BusRig(int num_axes, Cia402Params base = {}) : params(std::move(base)) {
-    for (int i = 0; i < num_axes; ++i) {
-      AxisConfig axis;
-      axis.node_id = static_cast<std::uint8_t>(i + 1);
-      axis.counts_per_rad = 1000.0;
-      axis.min_rad = -2.0;
-      axis.max_rad = 2.0;
-      params.axes.push_back(axis);
-      drives.emplace_back(static_cast<std::uint8_t>(i + 1));
-    }
+    for (int i = 0; i < num_axes; ++i) add_axis(static_cast<std::uint8_t>(i + 1));
+  }
+
+  void add_axis(std::uint8_t node) {
+    AxisConfig axis;
+    axis.node_id = node;
+    axis.counts_per_rad = 1000.0;
+    axis.min_rad = -2.0;
+    axis.max_rad = 2.0;
+    params.axes.push_back(axis);
+    drives.emplace_back(node);
   }
 
   /// To be called after the last change of params.

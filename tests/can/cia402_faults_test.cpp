@@ -149,13 +149,13 @@ TEST(Cia402Faults, ClearedEmergencyIsNoFault) {
 // An emergency while configuring forbids to go on, even if no object was refused.
 TEST(Cia402Faults, EmergencyWhileConfiguringForbidsMotion) {
   BusRig rig(1);
-  rig.drives[0].dead_objects.insert(ScriptedDrive::key(0x1400, 5));  // makes it last 300 ms longer
+  rig.drives[0].dead_objects.insert(ScriptedDrive::key(0x1400, 5));  // makes it last 1.2 s longer
   rig.build();
   rig.cycle();
   rig.bus->configure();
   ASSERT_TRUE(rig.run_until(BusPhase::kConfiguring, 1000));
   rig.line.put(from_hex("081#2082010000000000"));
-  rig.run_ms(1000);
+  rig.run_ms(2000);
   EXPECT_EQ(rig.bus->phase(), BusPhase::kIdle);
   EXPECT_TRUE(rig.has(FaultCause::kEmergency, 0));
 }

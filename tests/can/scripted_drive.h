@@ -3,6 +3,7 @@
 // codec under test. It stands where it is told, at once; a test makes it misbehave.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -22,14 +23,19 @@ class ScriptedDrive {
   bool is_mute_on_sync = false;  ///< no TPDO1
   bool has_heartbeat = true;
   bool ignores_control_word = false;
-  bool has_torque = true;  ///< 8-byte TPDO1
+  int sdo_delay_ms = 0;  ///< one request after the other, each takes so long
   std::int32_t position = 1000;
   std::map<std::uint32_t, std::uint32_t> aborts;      ///< object -> abort code, read and write
   std::map<std::uint32_t, std::uint32_t> reads_back;  ///< object -> another value than written
   std::set<std::uint32_t> dead_objects;               ///< no answer at all
+  std::set<std::uint32_t> read_only;                  ///< keep the value of set_object()
+  std::set<std::uint16_t> unmappable;                 ///< exist, but in no PDO
 
   static std::uint32_t key(std::uint16_t index, std::uint8_t subindex) {
     return static_cast<std::uint32_t>(index) << 8 | subindex;
+  }
+  void lack(std::uint16_t index, std::uint8_t subindex = 0) {
+    aborts[key(index, subindex)] = subindex == 0 ? 0x06020000 : 0x06090011;
   }
   void set_object(std::uint16_t index, std::uint8_t subindex, std::uint32_t value) {
     objects_[key(index, subindex)] = value;
@@ -46,7 +52,13 @@ class ScriptedDrive {
   std::uint16_t max_torque() const { return max_torque_; }
   int num_fault_resets() const { return num_fault_resets_; }
   std::int32_t first_enabled_target() const { return first_enabled_target_; }
+  int num_wrong_lengths() const { return num_wrong_lengths_; }
 
+  /// As a master before this one left it: running, and in this state.
+  void run_with(std::uint16_t status) {
+    network_ = 0x05;
+    status_ = status;
+  }
   void fail() { status_ = 0x0218; }
 
   CanFrame boot_up() {
@@ -64,15 +76,26 @@ class ScriptedDrive {
       if (frame.data[0] == 0x80) network_ = 0x7F;
       return heartbeat_frames();
     }
-    if (frame.id == 0x600U + node_) return answer_sdo(frame);
-    if (frame.id == 0x200U + node_ && network_ == 0x05) take_command(frame);
+    if (frame.id == 0x600U + node_) {
+      if (sdo_delay_ms == 0) return answer_sdo(frame);
+      requests_.push_back(frame);
+      return {};
+    }
+    if (frame.id == 0x200U + node_ && network_ == 0x05) return take_command(frame);
     if (frame.id == 0x080 && network_ == 0x05 && !is_mute_on_sync) return {state_frame()};
     return {};
   }
 
   /// What it sends by itself at this millisecond.
   std::vector<CanFrame> tick(std::int64_t time_ms) {
-    if (is_silent || time_ms % 100 != node_) return {};
+    if (is_silent) return {};
+    if (!requests_.empty() && ++request_age_ms_ >= sdo_delay_ms) {
+      const CanFrame request = requests_.front();
+      requests_.erase(requests_.begin());
+      request_age_ms_ = 0;
+      return answer_sdo(request);
+    }
+    if (time_ms % 100 != node_ % 100) return {};
     return heartbeat_frames();
   }
 
@@ -97,11 +120,28 @@ class ScriptedDrive {
                               static_cast<int>(bits >> 8 & 0xFF),
                               static_cast<int>(bits >> 16 & 0xFF),
                               static_cast<int>(bits >> 24)};
-    if (has_torque) {
-      bytes.push_back(0x64);  // 100 permille
-      bytes.push_back(0x00);
-    }
+    bytes.push_back(0x64);  // 100 permille
+    bytes.push_back(0x00);
+    bytes.resize(std::min(bytes.size(), mapped_bytes(0x1A00)));
     return make(0x180U + node_, bytes);
+  }
+
+  /// What a PDO carries by its mapping; 8 as delivered.
+  std::size_t mapped_bytes(std::uint16_t mapping) const {
+    const auto count = objects_.find(key(mapping, 0));
+    if (count == objects_.end()) return 8;
+    std::uint32_t num_bits = 0;
+    for (std::uint32_t i = 1; i <= count->second; ++i) {
+      num_bits += object(mapping, static_cast<std::uint8_t>(i)) & 0xFF;
+    }
+    return num_bits / 8;
+  }
+
+  /// The object that this entry of a mapping names exists and may be in a PDO.
+  std::uint32_t mapping_abort(std::uint32_t entry) const {
+    if (unmappable.count(static_cast<std::uint16_t>(entry >> 16)) != 0) return 0x06040041;
+    const auto missing = aborts.find(key(static_cast<std::uint16_t>(entry >> 16), 0));
+    return missing == aborts.end() ? 0 : missing->second;
   }
 
   std::vector<CanFrame> answer_sdo(const CanFrame& frame) {
@@ -132,11 +172,20 @@ class ScriptedDrive {
     for (int i = 0; i < num_bytes; ++i) {
       value |= static_cast<std::uint32_t>(frame.data[static_cast<std::size_t>(4 + i)]) << 8 * i;
     }
+    if (read_only.count(object) != 0) return reply(0x80, 0x06010002);
+    const bool is_mapping = (index & 0xFF00) == 0x1600 || (index & 0xFF00) == 0x1A00;
+    if (is_mapping && sub != 0 && mapping_abort(value) != 0) {
+      return reply(0x80, mapping_abort(value));
+    }
     objects_[object] = value;
     return reply(0x60, 0);
   }
 
-  void take_command(const CanFrame& frame) {
+  std::vector<CanFrame> take_command(const CanFrame& frame) {
+    if (frame.dlc != mapped_bytes(0x1600)) {
+      ++num_wrong_lengths_;
+      return {make(0x080U + node_, {0x20, 0x82, 0x11, 0, 0, 0, 0, 0})};
+    }
     const auto last = control_;
     control_ = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
     std::uint32_t bits = 0;
@@ -148,6 +197,7 @@ class ScriptedDrive {
       max_torque_ = static_cast<std::uint16_t>(frame.data[6] | frame.data[7] << 8);
     if (!ignores_control_word) walk(last);
     if ((status_ & 0x6F) == 0x27) position = target_;
+    return {};
   }
 
   void walk(std::uint16_t last) {
@@ -184,6 +234,9 @@ class ScriptedDrive {
   std::int32_t first_enabled_target_ = INT32_MIN;
   std::uint16_t max_torque_ = 0;
   int num_fault_resets_ = 0;
+  int num_wrong_lengths_ = 0;
+  std::vector<CanFrame> requests_;
+  int request_age_ms_ = 0;
   std::map<std::uint32_t, std::uint32_t> objects_;
 };
 
