@@ -34,6 +34,7 @@ addObject(0x1000, UNSIGNED32, 0x00020192);
 addObject(0x1006, UNSIGNED32);
 eds.addSdoServerParameter(node, 0x580 + node, 0x600 + node);
 eds.setSyncCobId(0x80);
+eds.setEmcyCobId(0x80 + node);
 addObject(0x1017, UNSIGNED16, 100);
 eds.addHeartbeatConsumer(0x7F, 150);
 addRecord(0x1029, [UNSIGNED8]);
@@ -54,7 +55,9 @@ const modeDisplay = addObject(0x6061, INTEGER8, 8);
 const inputs = addObject(0x60FD, UNSIGNED32);
 
 // The library's mapping is fixed when it starts; what SDO writes to it later only shows in the dictionary.
-eds.addReceivePdo({ cobId: 0x200 + node, transmissionType: 1, dataObjects: [controlWord, target, maxTorque].filter(Boolean) });
+const commands = [controlWord, target, maxTorque].filter(Boolean);
+const numCommandBytes = maxTorque ? 8 : 6;
+eds.addReceivePdo({ cobId: 0x200 + node, transmissionType: 1, dataObjects: commands });
 eds.addTransmitPdo({ cobId: 0x180 + node, transmissionType: 1, dataObjects: [statusWord, position, torque].filter(Boolean) });
 eds.addTransmitPdo({ cobId: 0x280 + node, transmissionType: 254, eventTime: 100, dataObjects: [errorCode, modeDisplay, inputs] });
 for (const index of [0x1600, 0x1A00, 0x1A01]) {
@@ -92,7 +95,13 @@ lines.on('line', (line) => {
   const [id, bytes] = line.trim().split('#');
   const data = Buffer.from(bytes, 'hex');
   const cobId = parseInt(id, 16);
-  if (cobId === 0x200 + node) isCommanded = true;
+  if (cobId === 0x200 + node) {
+    isCommanded = data.length === numCommandBytes;
+    if (!isCommanded) { // as drives do that are told more or less than they are mapped to
+      device.emcy.write(0x8220);
+      return;
+    }
+  }
   if (cobId === 0x80 && isCommanded) { // what the RPDO of this cycle brought becomes valid
     isCommanded = false;
     follow();
