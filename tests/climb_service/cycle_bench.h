@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "../plant/memory_transport.h"
 #include "can/cia402_bus.h"
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/drive_layout.h"
+#include "robot_in_a_box/memory_transport.h"
 #include "simulator/plant/monitor.h"
 #include "simulator/plant/robot_plant.h"
 
@@ -86,7 +86,7 @@ struct CycleBench {
 
   simulator::MemoryBus bus;
   simulator::RobotPlant plant;
-  simulator::MemoryTransport transport;
+  robot_in_a_box::MemoryTransport transport;
   simulator::Monitor monitor;
   can::FlightRecorder recorder;
   can::Cia402Bus master;
