@@ -1,3 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# vcan0 and vcan1 of scripts/vm --vcan 2; the tests make further interfaces themselves.
+# vcan0 and the controller pair of scripts/vm --vcan 1 --kvaser; the tests make further interfaces themselves.
 hardware_test(hardware_can_socket_test SOURCES can_socket_test.cpp LINK can_bus)
+if(TARGET ladder_plant_main)
+  hardware_test(hardware_can_master_test SOURCES can_master_test.cpp LINK can_bus test_support TIMEOUT 180)
+  target_compile_definitions(
+    hardware_can_master_test PRIVATE LADDER_PLANT_PROGRAM="$<TARGET_FILE:ladder_plant_main>"
+                                     LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/power_up.candump")
+  add_dependencies(hardware_can_master_test ladder_plant_main)
+endif()
