@@ -82,9 +82,11 @@ class Reporter {
 
 void work_until_stopped(Service& service, Bus& bus, Health& health, Reporter& reporter,
                         int stop_signals) {
-  pollfd waiting[2] = {{bus.file_descriptor(), POLLIN, 0}, {stop_signals, POLLIN, 0}};
+  pollfd waiting[3] = {{bus.file_descriptor(), POLLIN, 0},
+                       {stop_signals, POLLIN, 0},
+                       {service.wake_up(), POLLIN, 0}};
   while ((waiting[1].revents & POLLIN) == 0) {
-    poll(waiting, 2, kMaxWaitMs);
+    poll(waiting, 3, kMaxWaitMs);
     bus.drain();
     service.step(clock_now());
     health.count_step();
@@ -143,6 +145,14 @@ int run_service(int argc, char** argv, const ServiceDescription& description) {
       ->allow_extra_args(false);
   app.add_option("--url", arguments.url, "LCM URL (default: LCM_DEFAULT_URL, else the robot's)");
   app.add_flag("--check", arguments.check, "print the resolved configuration and stop");
+  for (const Shorthand& shorthand : description.shorthands) {
+    app.add_option_function<std::string>(
+        shorthand.option,
+        [&arguments, key = shorthand.key](const std::string& value) {
+          arguments.overrides.push_back(key + "=" + value);
+        },
+        shorthand.help);
+  }
   app.set_version_flag("--version", std::string(kVersion));
   try {
     app.parse(argc, argv);

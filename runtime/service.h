@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/clock.h"
 #include "runtime/bus.h"
@@ -30,6 +31,16 @@ class Service {
   /// Takes what is in the mailboxes, works, publishes. Called after every drain and at least every
   /// 50 ms.
   virtual void step(const base::Now& now) noexcept = 0;
+  /// Readable when step() has work that does not come from the bus (a device); -1 = none.
+  virtual int wake_up() const { return -1; }
+};
+
+/// A command line option that stands for a key of the configuration, e.g. --source for
+/// sensor.source. It wins over the files, as --set does.
+struct Shorthand {
+  std::string option;
+  std::string key;
+  std::string help;
 };
 
 /// Name and number of a service, and how to build it.
@@ -38,6 +49,7 @@ struct ServiceDescription {
   std::int8_t number = 0;  ///< health_t SERVICE_*
   std::string purpose;     ///< one line for --help
   std::function<std::unique_ptr<Service>(const ServiceContext&)> make;
+  std::vector<Shorthand> shorthands = {};
 };
 
 inline constexpr int kExitAsked = 0;
