@@ -8,6 +8,14 @@ tof::Pose to_pose(const double (&p_m)[3], const double (&q)[4]) {
   return {.p_m = {p_m[0], p_m[1], p_m[2]}, .q = {q[0], q[1], q[2], q[3]}};
 }
 
+void copy(const tof::Pose& pose, double (&p_m)[3], double (&q)[4]) {
+  for (int axis = 0; axis < 3; ++axis) p_m[axis] = pose.p_m[axis];
+  q[0] = pose.q.w();
+  q[1] = pose.q.x();
+  q[2] = pose.q.y();
+  q[3] = pose.q.z();
+}
+
 }  // namespace
 
 tof::DepthFrame to_depth_frame(const ladder_msgs::tof_frame_t& message) {
@@ -41,6 +49,35 @@ tof::ImuSample to_imu_sample(const ladder_msgs::imu_t& message) {
 
 tof::Pose to_pose(const ladder_msgs::pose_t& message) {
   return to_pose(message.p_odom_body_m, message.q_odom_body);
+}
+
+void to_message(const tof::DepthFrame& frame, ladder_msgs::tof_frame_t& m) {
+  m.utime = frame.utime_us;
+  m.seq = frame.seq;
+  m.head = static_cast<std::int8_t>(frame.head);
+  m.depth_kind = static_cast<std::int8_t>(frame.depth_kind);
+  m.width_px = static_cast<std::int16_t>(frame.width_px);
+  m.height_px = static_cast<std::int16_t>(frame.height_px);
+  m.fx_px = frame.intrinsics.fx_px;
+  m.fy_px = frame.intrinsics.fy_px;
+  m.cx_px = frame.intrinsics.cx_px;
+  m.cy_px = frame.intrinsics.cy_px;
+  m.range_min_m = frame.range_min_m;
+  m.range_max_m = frame.range_max_m;
+  m.wrap_range_m = frame.wrap_range_m;
+  copy(frame.T_body_head, m.p_body_head_m, m.q_body_head);
+  m.num_pixels = static_cast<std::int32_t>(frame.depth_mm.size());
+  m.depth_mm.assign(frame.depth_mm.begin(), frame.depth_mm.end());
+  m.num_confidence = static_cast<std::int32_t>(frame.confidence.size());
+  m.confidence.assign(frame.confidence.begin(), frame.confidence.end());
+}
+
+void to_message(const tof::ImuSample& sample, ladder_msgs::imu_t& m) {
+  m.utime = sample.utime_us;
+  for (int axis = 0; axis < 3; ++axis) {
+    m.accelerometer_m_s2[axis] = sample.accelerometer_m_s2[axis];
+    m.gyroscope_rad_s[axis] = sample.gyroscope_rad_s[axis];
+  }
 }
 
 void to_message(const tof::Cloud& cloud, ladder_msgs::point_cloud_t& m) {

@@ -18,6 +18,9 @@ tof::DepthFrame to_depth_frame(const ladder_msgs::tof_frame_t& message);
 tof::ImuSample to_imu_sample(const ladder_msgs::imu_t& message);
 tof::Pose to_pose(const ladder_msgs::pose_t& message);
 
+void to_message(const tof::DepthFrame& frame, ladder_msgs::tof_frame_t& message);
+/// Fills everything but seq.
+void to_message(const tof::ImuSample& sample, ladder_msgs::imu_t& message);
 /// Fills everything but seq.
 void to_message(const tof::Cloud& cloud, ladder_msgs::point_cloud_t& message);
 

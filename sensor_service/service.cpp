@@ -4,11 +4,14 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "ladder_msgs/health_t.hpp"
 #include "sensor_service/config.h"
 #include "sensor_service/convert.h"
 #include "sensor_service/lcm_source.h"
+#include "sources/make_sources.h"
+#include "sources/ready_set.h"
 #include "tof/fusion.h"
 
 namespace sensor_service {
@@ -25,26 +28,51 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
  public:
   explicit SensorService(runtime::ServiceContext context)
       : context_(context),
-        source_(std::make_unique<LcmSource>(context.bus)),
+        sources_(sources::make_device_sources(read_source_params(context.config), ready_)),
+        owns_devices_(!sources_.empty()),
         poses_(context.bus.queue(channels::kPose, kMaxWaitingPoses)),
-        fusion_(read_params(context.config)) {}
+        fusion_(read_params(context.config)) {
+    if (!owns_devices_) sources_.push_back(std::make_unique<LcmSource>(context.bus));
+  }
 
   void step(const base::Now& now) noexcept override {
     while (const ladder_msgs::pose_t* pose = poses_.take(now.utime_us)) {
       fusion_.add_pose(pose->utime, to_pose(*pose));
     }
     now_us_ = now.monotonic_us;
-    source_->poll(now, *this);
+    for (const auto& source : sources_) source->poll(now, *this);
     if (now_us_ - last_frame_us_ > kSilentAfterUs) {
       context_.health.set_state(health_t::STATE_WAITING);
     }
   }
 
+  int wake_up() const override { return ready_.file_descriptor(); }
+
  private:
-  void on_imu(const tof::ImuSample& sample) override { fusion_.add_imu(sample); }
+  /// What came from a device is published as well: recorders and replays see the same as we do.
+  void on_imu(const tof::ImuSample& sample) override {
+    if (owns_devices_) {
+      to_message(sample, imu_message_);
+      context_.bus.publish(channels::kImu, imu_message_);
+      ++imu_message_.seq;
+    }
+    fusion_.add_imu(sample);
+  }
+
+  void on_device(bool is_working, const std::string& text) override {
+    if (is_working) {
+      context_.journal.info(text);
+    } else {
+      context_.journal.warning(text);
+    }
+  }
 
   void on_frame(const tof::DepthFrame& frame) override {
     last_frame_us_ = now_us_;
+    if (owns_devices_) {
+      to_message(frame, frame_message_);
+      context_.bus.publish(channels::kTof[frame.head], frame_message_);
+    }
     const std::int64_t recordings = fusion_.counters().recordings;
     tof::FrameResult result;
     {
@@ -96,10 +124,14 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
   }
 
   runtime::ServiceContext context_;
-  std::unique_ptr<sources::FrameSource> source_;
+  sources::ReadySet ready_;
+  std::vector<std::unique_ptr<sources::FrameSource>> sources_;
+  bool owns_devices_;  ///< and publishes what they deliver; else all comes over LCM
   runtime::Queue<ladder_msgs::pose_t>& poses_;
   tof::Fusion fusion_;
   ladder_msgs::point_cloud_t message_{};
+  ladder_msgs::tof_frame_t frame_message_{};
+  ladder_msgs::imu_t imu_message_{};
   std::array<tof::HeadState, tof::kNumHeads> told_{};
   std::int64_t now_us_ = 0;
   std::int64_t last_frame_us_ = 0;
@@ -111,9 +143,13 @@ runtime::ServiceDescription description() {
   return {.name = "sensor",
           .number = health_t::SERVICE_SENSOR,
           .purpose = "sensor_service: depth frames, IMU and pose in, point clouds out",
-          .make = [](const runtime::ServiceContext& context) {
-            return std::make_unique<SensorService>(context);
-          }};
+          .make =
+              [](const runtime::ServiceContext& context) {
+                return std::make_unique<SensorService>(context);
+              },
+          .shorthands = {{"--source", "sensor.source",
+                          "where depth frames come from: lcm, v4l2 or a010 (= --set "
+                          "sensor.source=...)"}}};
 }
 
 }  // namespace sensor_service
