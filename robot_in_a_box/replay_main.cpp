@@ -50,7 +50,9 @@ Counts replay(const Arguments& arguments) {
       throw std::runtime_error(arguments.out + ": writing failed; is the disk full?");
   };
 
-  robot_in_a_box::Chain chain(runtime::Config::load(arguments.config_files, arguments.overrides));
+  std::vector<std::string> overrides = arguments.overrides;
+  overrides.emplace_back("sensor.source=lcm");  // the log delivers, whatever the robot has
+  robot_in_a_box::Chain chain(runtime::Config::load(arguments.config_files, overrides));
   std::string write_error;
   chain.record({"LADDER_CLOUD", "LADDER_TOPOLOGY", "LADDER_RUNGS"},
                [&](const char* channel, const void* bytes, std::size_t num_bytes) {
