@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The channels: name, number in health_t, and the message type. A channel that no service uses yet
-// (LADDER_COMMAND, LADDER_CLIMB, LADDER_SIM) enters together with its type.
+// (LADDER_SIM) enters together with its type.
 #pragma once
 
 #include <array>
@@ -36,6 +36,9 @@ inline constexpr Channel<ladder_msgs::point_cloud_t> kCloud{"LADDER_CLOUD", Heal
 inline constexpr Channel<ladder_msgs::topology_t> kTopology{"LADDER_TOPOLOGY",
                                                             Health::CHANNEL_TOPOLOGY};
 inline constexpr Channel<ladder_msgs::ladder_t> kRungs{"LADDER_RUNGS", Health::CHANNEL_RUNGS};
+inline constexpr Channel<ladder_msgs::command_t> kCommand{"LADDER_COMMAND",
+                                                          Health::CHANNEL_COMMAND};
+inline constexpr Channel<ladder_msgs::climb_state_t> kClimb{"LADDER_CLIMB", Health::CHANNEL_CLIMB};
 inline constexpr Channel<ladder_msgs::health_t> kHealth{"LADDER_HEALTH", Health::CHANNEL_HEALTH};
 inline constexpr Channel<ladder_msgs::event_t> kEvent{"LADDER_EVENT", Health::CHANNEL_EVENT};
 inline constexpr Channel<ladder_msgs::config_t> kConfig{"LADDER_CONFIG", Health::CHANNEL_CONFIG};
@@ -56,11 +59,11 @@ constexpr ChannelInfo info(const Channel<Msg>& channel) {
 }
 
 inline constexpr std::array kChannels{
-    info(channels::kTof[0]), info(channels::kTof[1]),   info(channels::kTof[2]),
-    info(channels::kTof[3]), info(channels::kImu),      info(channels::kPose),
-    info(channels::kCloud),  info(channels::kTopology), info(channels::kRungs),
-    info(channels::kHealth), info(channels::kEvent),    info(channels::kConfig),
-    info(channels::kTruth),
+    info(channels::kTof[0]),  info(channels::kTof[1]),   info(channels::kTof[2]),
+    info(channels::kTof[3]),  info(channels::kImu),      info(channels::kPose),
+    info(channels::kCloud),   info(channels::kTopology), info(channels::kRungs),
+    info(channels::kCommand), info(channels::kClimb),    info(channels::kHealth),
+    info(channels::kEvent),   info(channels::kConfig),   info(channels::kTruth),
 };
 
 /// The channel of this name, or nullptr.

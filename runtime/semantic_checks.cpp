@@ -17,6 +17,8 @@ constexpr double kMaxAcceleration_m_s2 = 1e3;
 constexpr double kMaxTurnRate_rad_s = 1e3;
 constexpr double kMaxFocalLength_px = 1e5;
 constexpr double kMaxSide_px = 1024;
+constexpr double kMaxAngle_rad = 1e4;
+constexpr double kMaxTorque_Nm = 1e4;
 constexpr double kLargest = 1e12;  // of sums without a natural bound
 
 Reject verdict(bool is_sound) {
@@ -48,6 +50,43 @@ bool is_known_service(std::int8_t service) {
 }
 
 }  // namespace
+
+Reject check_values(const ladder_msgs::command_t& m) {
+  return verdict(is_stamped(m) && m.session_id >= 0 &&
+                 within(m.order, m.ORDER_NONE, m.ORDER_DISARM));
+}
+
+namespace {
+
+bool are_drives(const ladder_msgs::climb_state_t& m) {
+  return within(m.bus_phase, 0, m.BUS_FAULTED) && within(m.has_targets, 0, 1) &&
+         all_within(m.is_heard, 0, 1) && all_within(m.wanted_rad, -kMaxAngle_rad, kMaxAngle_rad) &&
+         all_within(m.measured_rad, -kMaxAngle_rad, kMaxAngle_rad) &&
+         all_within(m.torque_Nm, -kMaxTorque_Nm, kMaxTorque_Nm) &&
+         all_within(m.drive_state, 0, m.DRIVE_FAULT) && all_at_least(m.error_code, 0);
+}
+
+bool are_cycles(const ladder_msgs::climb_state_t& m) {
+  return m.cycles >= 0 && m.overruns >= 0 && m.cycle_p50_us >= -1 && m.cycle_p99_us >= -1 &&
+         m.cycle_max_us >= -1 && m.late_p99_us >= -1 && m.late_max_us >= -1;
+}
+
+}  // namespace
+
+Reject check_values(const ladder_msgs::climb_state_t& m) {
+  const bool is_state =
+      m.session_id > 0 && within(m.state, 0, m.STATE_DISARMING) &&
+      within(m.reason, 0, m.REASON_PERCEPTION_SILENT) && within(m.refusal, 0, m.REFUSAL_SINGULAR) &&
+      within(m.burden, 0, m.BURDEN_TORQUE) && within(m.policy, 0, m.POLICY_NO_POWER_OFF_HOLD) &&
+      within(m.at_top, 0, 1) && within(m.body_shift, 0, 1);
+  const bool is_answer = within(m.order, 0, ladder_msgs::command_t::ORDER_DISARM) &&
+                         m.order_seq >= -1 && within(m.order_verdict, 0, m.VERDICT_NOT_NOW);
+  const bool are_limbs =
+      within(m.estop_active, 0, 1) && within(m.lines_lost, 0, 1) && all_within(m.touch, 0, 1) &&
+      all_within(m.limb_state, 0, m.LIMB_SUPPORT_LOST) && all_at_least(m.rung_id, -1);
+  return verdict(is_stamped(m) && is_state && is_answer && are_limbs && are_drives(m) &&
+                 are_cycles(m));
+}
 
 Reject check_values(const ladder_msgs::config_t& m) {
   return verdict(encodable(m) && is_stamped(m) && is_known_service(m.service) &&

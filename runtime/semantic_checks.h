@@ -9,6 +9,8 @@
 #include "runtime/reject.h"
 
 namespace ladder_msgs {
+class climb_state_t;
+class command_t;
 class config_t;
 class event_t;
 class health_t;
@@ -23,6 +25,8 @@ class truth_t;
 
 namespace runtime {
 
+Reject check_values(const ladder_msgs::climb_state_t& message);
+Reject check_values(const ladder_msgs::command_t& message);
 Reject check_values(const ladder_msgs::config_t& message);
 Reject check_values(const ladder_msgs::event_t& message);
 Reject check_values(const ladder_msgs::health_t& message);

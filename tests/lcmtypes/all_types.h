@@ -14,10 +14,10 @@
 namespace lcmtypes {
 
 using AllMessages =
-    std::tuple<ladder_msgs::config_t, ladder_msgs::event_t, ladder_msgs::health_t,
-               ladder_msgs::imu_t, ladder_msgs::ladder_t, ladder_msgs::point_cloud_t,
-               ladder_msgs::pose_t, ladder_msgs::tof_frame_t, ladder_msgs::topology_t,
-               ladder_msgs::truth_t>;
+    std::tuple<ladder_msgs::climb_state_t, ladder_msgs::command_t, ladder_msgs::config_t,
+               ladder_msgs::event_t, ladder_msgs::health_t, ladder_msgs::imu_t,
+               ladder_msgs::ladder_t, ladder_msgs::point_cloud_t, ladder_msgs::pose_t,
+               ladder_msgs::tof_frame_t, ladder_msgs::topology_t, ladder_msgs::truth_t>;
 inline constexpr std::size_t kNumTypes = std::tuple_size_v<AllMessages>;
 static_assert(kNumTypes == std::size(runtime::kWireTypes), "a type is missing in AllMessages");
 

@@ -93,6 +93,41 @@ std::int8_t any_service(Rng& rng) {
 
 }  // namespace
 
+void fill_sample(ladder_msgs::command_t& m, int /*size*/, Rng& rng) {
+  stamp(m, rng);
+  m.session_id = 1 + index_below(rng, 1'000'000);
+  m.order = static_cast<std::int8_t>(index_below(rng, m.ORDER_DISARM + 1));
+}
+
+void fill_sample(ladder_msgs::climb_state_t& m, int /*size*/, Rng& rng) {
+  stamp(m, rng);
+  m.session_id = 1 + index_below(rng, 1'000'000);
+  m.state = m.STATE_CLIMBING;
+  m.reason = m.REASON_NONE;
+  m.refusal = m.REFUSAL_NONE;
+  m.burden = m.BURDEN_BORNE;
+  m.policy = m.POLICY_NONE;
+  m.order = ladder_msgs::command_t::ORDER_CLIMB;
+  m.order_seq = index_below(rng, 1000);
+  m.order_verdict = m.VERDICT_ACCEPTED;
+  fill_integers(m.touch, rng, 0, 1);
+  fill_integers(m.limb_state, rng, 1, m.LIMB_SUPPORT_LOST);
+  fill_integers(m.rung_id, rng, -1, 20);
+  m.bus_phase = m.BUS_ENABLED;
+  m.has_targets = 1;
+  std::fill(std::begin(m.is_heard), std::end(m.is_heard), std::int8_t{1});
+  fill_between(m.wanted_rad, rng, -2.0, 2.0);
+  fill_between(m.measured_rad, rng, -2.0, 2.0);
+  fill_between(m.torque_Nm, rng, -20.0, 20.0);
+  fill_integers(m.drive_state, rng, 0, m.DRIVE_FAULT);
+  m.cycles = index_below(rng, 100'000);
+  m.cycle_p50_us = 40;
+  m.cycle_p99_us = 80;
+  m.cycle_max_us = 120;
+  m.late_p99_us = 90;
+  m.late_max_us = 300;
+}
+
 void fill_sample(ladder_msgs::config_t& m, int size, Rng& rng) {
   stamp(m, rng);
   m.config_hash = static_cast<std::int64_t>(rng.next());

@@ -9,6 +9,8 @@ namespace lcmtypes {
 
 /// A sound message; `size` (0..) scales its arrays: about size rungs, 10 size nodes, 100 size
 /// points. size 0 = everything empty.
+void fill_sample(ladder_msgs::climb_state_t& m, int size, base::Rng& rng);
+void fill_sample(ladder_msgs::command_t& m, int size, base::Rng& rng);
 void fill_sample(ladder_msgs::config_t& m, int size, base::Rng& rng);
 void fill_sample(ladder_msgs::event_t& m, int size, base::Rng& rng);
 void fill_sample(ladder_msgs::health_t& m, int size, base::Rng& rng);

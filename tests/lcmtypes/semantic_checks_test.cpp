@@ -132,6 +132,41 @@ TEST(SemanticChecks, Pose) {
   EXPECT_REFUSED(pose_t, m.sigma_angle_rad = std::nan(""));
 }
 
+// An order exists; a session is never negative. A message of zeros is refused as a whole.
+TEST(SemanticChecks, Command) {
+  EXPECT_REFUSED(command_t, m.order = -1);
+  EXPECT_REFUSED(command_t, m.order = m.ORDER_DISARM + 1);
+  EXPECT_REFUSED(command_t, m.session_id = -1);
+  EXPECT_REFUSED(command_t, m = {});
+  EXPECT_ACCEPTED(command_t, m.order = m.ORDER_NONE);
+}
+
+// Each enumeration, flag and number of the climbing state stays in its range.
+TEST(SemanticChecks, ClimbState) {
+  EXPECT_REFUSED(climb_state_t, m.session_id = 0);
+  EXPECT_REFUSED(climb_state_t, m.state = m.STATE_DISARMING + 1);
+  EXPECT_REFUSED(climb_state_t, m.reason = m.REASON_PERCEPTION_SILENT + 1);
+  EXPECT_REFUSED(climb_state_t, m.refusal = m.REFUSAL_SINGULAR + 1);
+  EXPECT_REFUSED(climb_state_t, m.burden = m.BURDEN_TORQUE + 1);
+  EXPECT_REFUSED(climb_state_t, m.policy = m.POLICY_NO_POWER_OFF_HOLD + 1);
+  EXPECT_REFUSED(climb_state_t, m.order = ladder_msgs::command_t::ORDER_DISARM + 1);
+  EXPECT_REFUSED(climb_state_t, m.order_seq = -2);
+  EXPECT_REFUSED(climb_state_t, m.order_verdict = m.VERDICT_NOT_NOW + 1);
+  EXPECT_REFUSED(climb_state_t, m.at_top = 2);
+  EXPECT_REFUSED(climb_state_t, m.estop_active = -1);
+  EXPECT_REFUSED(climb_state_t, m.touch[3] = 2);
+  EXPECT_REFUSED(climb_state_t, m.limb_state[2] = m.LIMB_SUPPORT_LOST + 1);
+  EXPECT_REFUSED(climb_state_t, m.rung_id[0] = -2);
+  EXPECT_REFUSED(climb_state_t, m.bus_phase = m.BUS_FAULTED + 1);
+  EXPECT_REFUSED(climb_state_t, m.is_heard[15] = 2);
+  EXPECT_REFUSED(climb_state_t, m.drive_state[7] = m.DRIVE_FAULT + 1);
+  EXPECT_REFUSED(climb_state_t, m.error_code[1] = -1);
+  EXPECT_REFUSED(climb_state_t, m.measured_rad[5] = 2e4F);
+  EXPECT_REFUSED(climb_state_t, m.overruns = -1);
+  EXPECT_REFUSED(climb_state_t, m.cycle_max_us = -2);
+  EXPECT_ACCEPTED(climb_state_t, m.cycle_p50_us = -1);
+}
+
 // A cloud may be empty; its points are finite and from a head that exists.
 TEST(SemanticChecks, PointCloud) {
   EXPECT_REFUSED(point_cloud_t, m.x_m.back() = kNan);
