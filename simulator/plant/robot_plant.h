@@ -79,10 +79,12 @@ class RobotPlant {
   bool has_force_nodes() const { return !force_nodes_.empty(); }
   ForceNode& force_node(int leg) { return force_nodes_[static_cast<std::size_t>(leg)]; }
   RungWorld& world() { return world_; }
+  const RungWorld& world() const { return world_; }
   const Eigen::Isometry3d& T_world_body() const { return T_world_body_; }
 
   /// What happens to the robot from outside.
   void set_docked(bool docked);
+  bool is_docked() const { return docked_; }
   void press_estop(bool pressed) { estop_pressed_ = pressed; }
   void set_wire_fault(Line line, WireFault fault) { wires_[line] = fault; }
   void inject(int axis, std::uint16_t fault_code);

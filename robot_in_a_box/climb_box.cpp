@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_in_a_box/climb_box.h"
+
+#include <bit>
+
+namespace robot_in_a_box {
+namespace {
+
+using climb::ControllerState;
+using simulator::SessionEvent;
+
+constexpr std::int64_t kImuLost_us = 100'000;
+
+climb_controller::CycleParams cycle_params(const ClimbBoxParams& params) {
+  climb_controller::CycleParams cycle = params.cycle;
+  cycle.controller.session_id = base::Rng(params.seed, 1).next() | 1U;
+  return cycle;
+}
+
+}  // namespace
+
+ClimbBox::ClimbBox(const ClimbBoxParams& params)
+    : bus_(params.seed, params.bus_latency_us),
+      plant_(params.plant, bus_),
+      foreign_port_(bus_.attach(127)),
+      transport_(bus_),
+      chip_(plant_),
+      lines_(gpio::LinesParams{}, chip_),
+      perception_(params.perception, params.seed, plant_.T_world_body().translation()),
+      master_(servo_bus_params(params.drives, params.cycle.controller.climb), transport_),
+      cycle_(cycle_params(params), master_),
+      monitor_(simulator::MonitorParams(params.plant)) {
+  bus_.record(true);
+  monitor_.on_truth(plant_.truth());
+}
+
+void ClimbBox::send_foreign(const simulator::BusFrame& frame) {
+  bus_.send(foreign_port_, frame, now_us_);
+}
+
+void ClimbBox::cycle() {
+  const std::int64_t end_us = now_us_ + kCycle_us;
+  while (now_us_ < end_us) millisecond();
+  if (now_us_ >= hung_until_us_) step();
+}
+
+void ClimbBox::millisecond() {
+  now_us_ += kStep_us;
+  if (watcher_ != nullptr) watcher_->before(now_us_);
+  plant_.advance(now_us_);
+  perception_.update(now_us_, plant_);
+  transport_.set_time(now_us_);
+  observe();
+  if (now_us_ < hung_until_us_ || now_us_ % kCycle_us == 0) return;
+  lines_.poll(now_us_);
+  cycle_.poll(now_us_);
+}
+
+void ClimbBox::observe() {
+  for (const simulator::CarriedFrame& carried : bus_.take_carried()) {
+    hash(carried);
+    monitor_.on_frame(carried);
+    if (watcher_ != nullptr) watcher_->on_frame(carried);
+  }
+  for (simulator::CarriedFrame unread; bus_.receive(foreign_port_, now_us_, unread);) continue;
+  const simulator::PlantTruth truth = plant_.truth();
+  monitor_.on_truth(truth);
+  if (watcher_ != nullptr) watcher_->on_truth(truth);
+}
+
+void ClimbBox::step() {
+  const gpio::LineStates& lines = lines_.poll(now_us_);
+  for (const climb::Leg leg : climb::kLegs) inbox_.lines.touch[leg] = lines.touch[leg];
+  inbox_.lines.estop_clear = !lines.estop_active;
+  inbox_.lines.lost = lines.lost;
+
+  const simulator::ImuReading told = plant_.imu();
+  if (!imu_silent) {
+    inbox_.imu.q_odom_body = told.q_world_body * imu_turn;
+    inbox_.imu.acceleration_m_s2 = imu_falls ? 0.0 : told.specific_force_m_s2.norm();
+    imu_heard_us_ = now_us_;
+  }
+  inbox_.imu.valid = now_us_ - imu_heard_us_ <= kImuLost_us;
+  inbox_.ladder = perception_.view();
+  inbox_.ladder_received_us = perception_.received_us();
+  inbox_.command = command_;
+  command_ = {};
+  inbox_.faults = flags_;
+  if (now_us_ - stepped_us_ > 4 * kCycle_us) inbox_.faults |= climb::flag(climb::Fault::kOverrun);
+  stepped_us_ = now_us_;
+  cycle_.step(now_us_, inbox_, report_);
+  tell_monitor();
+  if (watcher_ != nullptr) watcher_->on_report(report_);
+}
+
+void ClimbBox::tell_monitor() {
+  if (report_.order_seq != told_seq_ && report_.verdict == climb::CommandVerdict::kAccepted) {
+    if (report_.order == climb::Order::kArm) monitor_.on_session(now_us_, SessionEvent::kArmed);
+    if (report_.order == climb::Order::kReset) monitor_.on_session(now_us_, SessionEvent::kReset);
+  }
+  told_seq_ = report_.order_seq;
+  const ControllerState now = state();
+  const bool came_down =
+      now == ControllerState::kDisarmed &&
+      (told_state_ == ControllerState::kDisarming || told_state_ == ControllerState::kArming);
+  if (came_down) monitor_.on_session(now_us_, SessionEvent::kDisarmed);
+  if (now != told_state_) monitor_.on_run(now_us_);
+  const bool stopped = is_latched(now) || now == ControllerState::kProtectiveHold;
+  if (stopped) {
+    const bool told = report_.output.reason != climb::Fault::kNone;
+    monitor_.on_stop(now_us_, told ? static_cast<int>(report_.output.reason) + 1 : 0);
+  }
+  told_state_ = now;
+}
+
+void ClimbBox::hash(const simulator::CarriedFrame& carried) {
+  const auto mix = [this](std::uint64_t value) {
+    frame_hash_ = (frame_hash_ ^ value) * 0x100000001B3ULL;
+  };
+  mix(static_cast<std::uint64_t>(carried.time_us));
+  mix(carried.frame.id);
+  mix(carried.frame.length);
+  mix(std::bit_cast<std::uint64_t>(carried.frame.bytes));
+}
+
+}  // namespace robot_in_a_box

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The climbing robot in one process and in virtual time: the live service's control cycle, the real
+// CiA 402 master, and the plant with its bus, lines and IMU. One millisecond after another, the
+// same for the same seed and the same calls. Rungs come from truth, with an error.
+#pragma once
+
+#include <cstdint>
+
+#include "can/cia402_bus.h"
+#include "climb_controller/control_cycle.h"
+#include "climb_controller/drive_layout.h"
+#include "gpio/lines.h"
+#include "robot_in_a_box/memory_chip.h"
+#include "robot_in_a_box/memory_transport.h"
+#include "robot_in_a_box/perceived_ladder.h"
+#include "simulator/plant/monitor.h"
+
+namespace robot_in_a_box {
+
+struct ClimbBoxParams {
+  std::uint64_t seed = 1;
+  simulator::PlantParams plant;
+  PerceptionParams perception;
+  climb_controller::CycleParams cycle;  ///< its session id is overwritten by one from the seed
+  climb_controller::DriveLayout drives;
+  std::int64_t bus_latency_us = 300;  ///< of a frame
+};
+
+/// Sees what an observer outside the controller sees, in order of time.
+class BoxWatcher {
+ public:
+  virtual ~BoxWatcher() = default;
+  /// Before the plant moves on to this millisecond: the place for things to happen.
+  virtual void before(std::int64_t now_us) = 0;
+  virtual void on_frame(const simulator::CarriedFrame& carried) = 0;
+  virtual void on_truth(const simulator::PlantTruth& truth) = 0;
+  /// After each cycle of the controller.
+  virtual void on_report(const climb_controller::CycleReport& report) = 0;
+};
+
+class ClimbBox {
+ public:
+  static constexpr std::int64_t kCycle_us = 10'000;
+  static constexpr std::int64_t kStep_us = 1'000;
+
+  explicit ClimbBox(const ClimbBoxParams& params);
+  ClimbBox(const ClimbBox&) = delete;
+  ClimbBox& operator=(const ClimbBox&) = delete;
+
+  /// Up to and including the next cycle of the controller.
+  void cycle();
+
+  /// In the next cycle, with this run's session and the next number.
+  void order(climb::Order order) { order({order, session_id(), ++last_seq_}); }
+  void order(const climb::OperatorCommand& command) { command_ = command; }
+  std::uint64_t session_id() const { return cycle_.session_id(); }
+  std::int64_t last_seq() const { return last_seq_; }
+
+  std::int64_t now_us() const { return now_us_; }
+  const climb_controller::CycleReport& report() const { return report_; }
+  climb::ControllerState state() const { return report_.output.state; }
+  const climb::Controller& controller() const { return cycle_.controller(); }
+
+  simulator::RobotPlant& plant() { return plant_; }
+  const simulator::RobotPlant& plant() const { return plant_; }
+  simulator::MemoryBus& bus() { return bus_; }
+  simulator::Monitor& monitor() { return monitor_; }
+  const simulator::Monitor& monitor() const { return monitor_; }
+  PerceivedLadder& perception() { return perception_; }
+  MemoryChip& chip() { return chip_; }
+  int master_port() const { return transport_.port(); }
+
+  /// From somebody else on the bus.
+  void send_foreign(const simulator::BusFrame& frame);
+
+  // --- what may happen to the controller's process and its sensors -------------------------------
+  void kill() { hung_until_us_ = INT64_MAX; }  ///< gone, without a word
+  void hang(std::int64_t duration_us) { hung_until_us_ = now_us_ + duration_us; }
+  void flag_fault(climb::Fault fault) { flags_ |= climb::flag(fault); }  ///< found by the service
+  void clear_flag(climb::Fault fault) { flags_ &= ~climb::flag(fault); }
+  bool imu_silent = false;
+  bool imu_falls = false;
+  Eigen::Quaterniond imu_turn = Eigen::Quaterniond::Identity();  ///< added to what it tells
+
+  void watch(BoxWatcher* watcher) { watcher_ = watcher; }
+  /// FNV-1a over all that crossed the bus: equal runs, equal numbers.
+  std::uint64_t frame_hash() const { return frame_hash_; }
+
+ private:
+  void millisecond();
+  void observe();
+  void step();
+  void tell_monitor();
+  void hash(const simulator::CarriedFrame& carried);
+
+  simulator::MemoryBus bus_;
+  simulator::RobotPlant plant_;
+  int foreign_port_;
+  MemoryTransport transport_;
+  MemoryChip chip_;
+  gpio::Lines lines_;
+  PerceivedLadder perception_;
+  can::Cia402Bus master_;
+  climb_controller::ControlCycle cycle_;
+  simulator::Monitor monitor_;
+
+  std::int64_t now_us_ = 0;
+  std::int64_t stepped_us_ = 0;
+  std::int64_t hung_until_us_ = 0;
+  std::int64_t imu_heard_us_ = -1'000'000'000;
+  climb_controller::CycleInbox inbox_;
+  climb_controller::CycleReport report_;
+  climb::OperatorCommand command_;
+  std::int64_t last_seq_ = 0;
+  climb::FaultFlags flags_ = 0;
+  climb::ControllerState told_state_ = climb::ControllerState::kBoot;
+  std::int64_t told_seq_ = -1;
+  BoxWatcher* watcher_ = nullptr;
+  std::uint64_t frame_hash_ = 0xCBF29CE484222325ULL;
+};
+
+}  // namespace robot_in_a_box
