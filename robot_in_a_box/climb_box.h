@@ -51,7 +51,7 @@ class ClimbBox {
   void cycle();
 
   /// In the next cycle, with this run's session and the next number.
-  void order(climb::Order order) { order({order, session_id(), ++last_seq_}); }
+  void order(climb::Order what) { order({what, session_id(), ++last_seq_}); }
   void order(const climb::OperatorCommand& command) { command_ = command; }
   std::uint64_t session_id() const { return cycle_.session_id(); }
   std::int64_t last_seq() const { return last_seq_; }
