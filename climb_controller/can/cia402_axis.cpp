@@ -52,6 +52,7 @@ void Cia402Axis::forget(std::int64_t now_us) {
   num_missed_ = 0;
   goal_ = Goal::kKeep;
   expects_torque_ = false;
+  may_quick_stop_ = false;
   is_broken_ = false;
   is_resetting_ = false;
   command_ = {};
@@ -153,9 +154,12 @@ void Cia402Axis::watch_cycle(BusLine& line, bool expects_frames) {
   } else if (expects_frames) {
     ++num_missed_;
   }
-  if (state_ == DriveState::kOperationEnabled && goal_ == Goal::kEnabled) expects_torque_ = true;
+  if (state_ == DriveState::kOperationEnabled && goal_ == Goal::kEnabled) {
+    expects_torque_ = true;
+    may_quick_stop_ = false;
+  }
   const bool holds = state_ == DriveState::kOperationEnabled ||
-                     (state_ == DriveState::kQuickStopActive && goal_ == Goal::kQuickStop);
+                     (state_ == DriveState::kQuickStopActive && may_quick_stop_);
   const bool failed = !is_resetting_ &&
                       (state_ == DriveState::kFault || state_ == DriveState::kFaultReactionActive);
   if (failed || (expects_torque_ && !holds)) {
@@ -192,6 +196,7 @@ void Cia402Axis::set_goal(Goal goal) {
   if (goal == Goal::kEnabled && is_broken_) goal = Goal::kKeep;
   if (goal == Goal::kKeep && goal_ == Goal::kQuickStop) return;  // it holds already
   if (goal == Goal::kDisabled || goal == Goal::kNoTorque) expects_torque_ = false;
+  if (goal == Goal::kQuickStop) may_quick_stop_ = true;  // and until it is enabled again
   goal_ = goal;
 }
 

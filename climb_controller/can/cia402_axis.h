@@ -94,6 +94,7 @@ class Cia402Axis {
 
   cia402::Goal goal_ = cia402::Goal::kKeep;
   bool expects_torque_ = false;  ///< it was brought to hold: losing that is a fault
+  bool may_quick_stop_ = false;  ///< it was told to, and was not enabled since
   bool is_broken_ = false;       ///< a fault of this axis: never enabled again before re-arming
   bool is_resetting_ = false;
   std::uint16_t control_word_ = 0;
