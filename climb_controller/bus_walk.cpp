@@ -55,8 +55,10 @@ void BusWalk::obey(DriveRequest request, bool has_targets) {
       bus_.enable();  // no effect while it is enabling
       return;
     case DriveRequest::kHold:
+      // By themselves: whoever arms next begins at the measured place, and drives that still
+      // followed the last target would be given a step by that.
       if (phase == BusPhase::kEnabled || phase == BusPhase::kEnabling) {
-        bus_.stop(can::StopKind::kHold);
+        bus_.stop(can::StopKind::kQuickStop);
       }
       return;
     case DriveRequest::kQuickStop:
