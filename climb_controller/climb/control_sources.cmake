@@ -5,10 +5,12 @@ set(climb_control_sources
     body_shift.cpp
     controller.cpp
     controller_output.cpp
+    controller_work.cpp
     failsafe.cpp
     fault_watch.cpp
     step_planner.cpp
     grasp_confirmation.cpp
     limb_cycle.cpp
+    limb_motion.cpp
     limb_state.cpp
     safety.cpp)

@@ -26,6 +26,8 @@ struct ControllerParams {
   double selftest_s = 0.2;
   double enable_timeout_s = 5.0;
   double dock_timeout_s = 120.0;  ///< for four claws to grasp in the dock
+  int max_shifts = 2;             ///< of the body before one step
+  double reset_after_s = 0.3;     ///< no reset before everything stands
 };
 
 /// "" or the violated relation, naming the field.
@@ -42,29 +44,44 @@ class Controller {
   const LimbCycle& limb(Leg leg) const { return limbs_[leg]; }
 
  private:
+  /// When to go over into HOLD.
+  enum class Ending : std::uint8_t { kNone, kAtRest, kNow };
+
+  // controller.cpp: faults, orders, states
+  FaultFlags faults_of(const ControllerInput& input);
+  void react(const Action& action);
   CommandVerdict take_command(const OperatorCommand& command);
   bool obey(Order order);
+  bool obey_climb(bool upwards);
+  bool obey_hold();
+  bool obey_reset();
   bool take(ControllerEvent event);
-  void react(const Action& action);
-  FaultFlags faults_of(const ControllerInput& input);
+
+  // controller_work.cpp: what each state does
   void work(const ControllerInput& input);
   void boot(const ControllerInput& input);
   void work_arming(const ControllerInput& input);
   void work_climbing(const ControllerInput& input);
   void start_following(const ControllerInput& input);
+  bool end_step();
+  bool ends_here(const RobotNow& now) const;
+  void search(Leg leg, const ControllerInput& input);
+  void watch_target(Leg leg, const ControllerInput& input);
   void move(const ControllerInput& input);
   bool must_stop(Leg leg) const;
   bool is_stance_firm() const;
+
+  // controller_output.cpp: what it knows, and what it says
   LimbInput limb_input(const ControllerInput& input, Leg leg) const;
   LadderView ladder_of(const ControllerInput& input) const;
   RobotNow robot_now(const ControllerInput& input) const;
   void update_pose(const ControllerInput& input);
-  void watch_target(const ControllerInput& input);
+  std::optional<Leg> moving_leg() const;
+  bool is_under_way() const { return moving_leg().has_value() || shift_.active(); }
   void send(const ControllerInput& input, ControllerOutput& output);
   void add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted) const;
   DriveRequest drive_request(const ControllerInput& input) const;
   void report(ControllerOutput& output) const;
-  const LimbCycle* moving_limb() const;
 
   ControllerParams params_;
   PerAxis<AxisLimits> limits_;
@@ -82,13 +99,18 @@ class Controller {
   Fault reason_ = Fault::kNone;
   std::int64_t last_seq_ = -1;
   double in_state_s_ = 0.0;
-  bool was_docked_ =
-      false;  ///< it hangs on its claws: four were loaded since arming, or three still
+  bool hangs_ = false;  ///< it hangs on its claws: four were loaded since arming, or three still
   bool upwards_ = true;
-  bool shifted_ = false;
-  bool finishing_ = false;  ///< the step in the air, then HOLD
-  bool following_ = false;  ///< targets are sent
-  bool unsafe_ = false;     ///< the gate refused our own command
+  Ending ending_ = Ending::kNone;
+  int num_shifts_ = 0;         ///< before the step that is next
+  int num_steps_to_rest_ = 0;  ///< since HOLD was ordered
+  bool stepping_ = false;      ///< a limb of the crawl is on its way
+  bool withdrawn_ = false;     ///< its target is gone
+  bool following_ = false;     ///< targets are sent
+  bool began_now_ = false;     ///< to follow, in this cycle: the first targets are as measured
+  bool rests_safely_ = false;
+  bool unsafe_ = false;  ///< the gate refused our own command
+  Eigen::Quaterniond q_odom_body_ = Eigen::Quaterniond::Identity();  ///< last sound one
   PlannedStep plan_;
   GateVerdict verdict_;
 };

@@ -66,6 +66,7 @@ struct ControllerOutput {
   PerLeg<int> rung_ids{};
   bool body_shift = false;
   bool at_top = false;
+  bool rests_safely = false;         ///< at the last HOLD: any one rung may break without a fall
   Refusal refusal = Refusal::kNone;  ///< why no grasp was chosen
   Burden burden = Burden::kBorne;    ///< why a limb may not be lifted
   OdometryEstimate pose;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The half of the controller behind its decisions: targets through the gate, requests, report.
+// The controller around its decisions: what it knows of the robot, targets through the gate,
+// requests, report.
 #include <algorithm>
 
 #include "climb/controller.h"
@@ -7,6 +8,65 @@
 namespace climb {
 
 using S = ControllerState;
+
+LimbInput Controller::limb_input(const ControllerInput& input, Leg leg) const {
+  LimbInput limb;
+  for (int joint = 0; joint < kNumLegJoints; ++joint) {
+    const AxisReading& axis = input.axes[axis_of(leg, joint)];
+    limb.angles_rad[joint] = axis.position_rad;
+    limb.torques_Nm[joint] = axis.torque_Nm;
+  }
+  limb.others_hold = true;
+  for (const Leg other : kLegs) {
+    const LimbCycle& cycle = limbs_[other];
+    const bool holds = is_confirmed(cycle.state()) && cycle.confirmation().holds();
+    if (other != leg && !holds) limb.others_hold = false;
+  }
+  const AxisReading& jaw = input.axes[axis_of(leg, kJaw)];
+  limb.claw = {input.touch[leg], jaw.position_rad, jaw.torque_Nm};
+  limb.T_odom_body = odometry_.estimate().T_odom_body();
+  limb.dt_s = params_.gate.period_s;
+  return limb;
+}
+
+LadderView Controller::ladder_of(const ControllerInput& input) const {
+  LadderView ladder = input.ladder;
+  ladder.age_s = 1e-6 * static_cast<double>(input.now_us - input.ladder_received_us);
+  return ladder;
+}
+
+RobotNow Controller::robot_now(const ControllerInput& input) const {
+  RobotNow now;
+  now.pose = odometry_.estimate();
+  now.stance.up_body = q_odom_body_.conjugate() * Eigen::Vector3d::UnitZ();
+  for (const Leg leg : kLegs) {
+    now.stance.angles_rad[leg] = limb_input(input, leg).angles_rad;
+    now.stance.contacts[leg].weight = limbs_[leg].target().weight;
+    now.stance.contacts[leg].rung_id = limbs_[leg].rung_id();
+    now.limbs[leg] = limbs_[leg].state();
+  }
+  return now;
+}
+
+void Controller::update_pose(const ControllerInput& input) {
+  OdometryInput odometry;
+  odometry.q_odom_body = input.imu.q_odom_body;
+  odometry.dt_s = params_.gate.period_s;
+  for (const Leg leg : kLegs) {
+    odometry.angles_rad[leg] = limb_input(input, leg).angles_rad;
+    odometry.weight[leg] = limbs_[leg].target().weight;
+  }
+  // In the dock the stand holds the body: odom begins there, and no error grows.
+  if (!hangs_) odometry_.reset();
+  odometry_.update(odometry);
+}
+
+std::optional<Leg> Controller::moving_leg() const {
+  for (const Leg leg : kLegs) {
+    if (limbs_[leg].moves()) return leg;
+  }
+  return std::nullopt;
+}
 
 void Controller::send(const ControllerInput& input, ControllerOutput& output) {
   output.send = following_ && !action_.silent && gate_.started();
@@ -29,7 +89,7 @@ void Controller::send(const ControllerInput& input, ControllerOutput& output) {
 
 void Controller::add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted) const {
   // In the dock the stand bears the weight.
-  if (!was_docked_ || !input.imu.valid) return;
+  if (!hangs_) return;
   const Stance stance = robot_now(input).stance;
   const PerLeg<LegAngles> torques_Nm = support_.torques_Nm(stance, support_.distribute(stance));
   for (const Leg leg : kLegs) {
@@ -73,6 +133,7 @@ void Controller::report(ControllerOutput& output) const {
   }
   output.body_shift = shift_.active();
   output.at_top = plan_.at_top;
+  output.rests_safely = rests_safely_;
   output.refusal = plan_.ready ? Refusal::kNone : plan_.refusal;
   output.burden = plan_.burden;
   output.pose = odometry_.estimate();

@@ -7,12 +7,32 @@ namespace climb {
 namespace {
 
 constexpr int kMaxBehind = 2;
+constexpr double kMaxUnitError = 1e-3;  // of a quaternion's norm
 
 Eigen::Vector3d up_of(const ImuReading& imu) {
   return imu.q_odom_body.conjugate() * Eigen::Vector3d::UnitZ();
 }
 
 }  // namespace
+
+bool is_sound(const ImuReading& imu) {
+  const double unit_error = std::abs(imu.q_odom_body.norm() - 1.0);  // NaN fails below
+  return imu.valid && unit_error <= kMaxUnitError && std::isfinite(imu.acceleration_m_s2);
+}
+
+std::string check(const WatchParams& p) {
+  const auto in = [](double value, double low, double high) {  // false for NaN
+    return value >= low && value <= high;
+  };
+  if (!in(p.period_s, 0.001, 0.1)) return "watch.period_s must be 0.001..0.1";
+  if (!in(p.max_following_rad, 0.0, 6.3)) return "watch.max_following_rad must be 0..6.3";
+  if (!in(p.jump_margin_rad, 0.0, 6.3)) return "watch.jump_margin_rad must be 0..6.3";
+  if (!in(p.min_upright_cosine, 0.0, 1.0)) return "watch.min_upright_cosine must be 0..1";
+  if (!in(p.free_fall_m_s2, 0.0, 9.0)) return "watch.free_fall_m_s2 must be 0..9";
+  if (!in(p.free_fall_s, 0.0, 1.0)) return "watch.free_fall_s must be 0..1";
+  if (p.max_ladder_age_us <= 0) return "watch.max_ladder_age_us must be above 0";
+  return "";
+}
 
 FaultWatch::FaultWatch(const PerAxis<AxisLimits>& limits, const WatchParams& params)
     : limits_(limits), params_(params) {}
@@ -59,8 +79,7 @@ bool FaultWatch::look_at_drives(const ControllerInput& input, const PerAxis<Axis
 }
 
 FaultFlags FaultWatch::look_at_imu(const ImuReading& imu) {
-  const bool finite = imu.q_odom_body.coeffs().allFinite() && std::isfinite(imu.acceleration_m_s2);
-  if (!imu.valid || !finite) return flag(Fault::kImuSilent);
+  if (!is_sound(imu)) return flag(Fault::kImuSilent);
   FaultFlags faults = 0;
   const bool falls = imu.acceleration_m_s2 < params_.free_fall_m_s2;
   falling_s_ = falls ? falling_s_ + params_.period_s : 0.0;

@@ -3,6 +3,8 @@
 // a silent IMU or perception, touch switches. What bus and lines find comes in as flags.
 #pragma once
 
+#include <string>
+
 #include "climb/controller_io.h"
 
 namespace climb {
@@ -16,6 +18,12 @@ struct WatchParams {
   double free_fall_s = 0.05;
   std::int64_t max_ladder_age_us = 300'000;
 };
+
+/// Heard, finite, and its orientation is a rotation.
+bool is_sound(const ImuReading& imu);
+
+/// "" or the violated relation, naming the field.
+std::string check(const WatchParams& params);
 
 class FaultWatch {
  public:

@@ -2,6 +2,7 @@
 #include "climb/grasp_choice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -22,6 +23,7 @@ bool finite(const RungView& rung) {
 
 bool finite(const GraspQuery& query) {
   if (!query.T_odom_body.matrix().allFinite() || !query.next_shift_m.allFinite()) return false;
+  if (query.avoid_m && !query.avoid_m->allFinite()) return false;
   if (!query.from_m.allFinite() || !(query.body_sigma_m >= 0.0)) return false;
   const Eigen::Matrix3d R = query.T_odom_body.linear();
   if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= kMaxUnitError)) return false;
@@ -38,6 +40,18 @@ double sigma_across_m(const Eigen::Matrix3d& covariance_m2, const Eigen::Vector3
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.compute(across * symmetric * across, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
+}
+
+struct Interval {
+  double low_m = 0.0;
+  double high_m = 0.0;
+};
+
+/// The two parts of `whole` beside `hole`; without a hole the whole twice.
+std::array<Interval, 2> without(const std::optional<Interval>& hole, const Interval& whole) {
+  if (!hole) return {whole, whole};
+  return {Interval{whole.low_m, std::min(whole.high_m, hole->low_m)},
+          Interval{std::max(whole.low_m, hole->high_m), whole.high_m}};
 }
 
 Eigen::Vector3d in_body(const GraspQuery& query, const Eigen::Vector3d& point_odom_m) {
@@ -126,7 +140,8 @@ Refusal GraspChoice::judge(const LadderView& ladder, int rung_index, const Grasp
 Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,
                                 GraspTarget& target) const {
   if (!finite(rung)) return Refusal::kNotFinite;
-  if (rung.id == query.avoid_rung_id) return Refusal::kAvoided;
+  const bool is_other = query.only_rung_id >= 0 && rung.id != query.only_rung_id;
+  if (rung.id == query.avoid_rung_id || is_other) return Refusal::kAvoided;
   if (!rung.trusted) return Refusal::kNotTrusted;
   if (rung.damaged) return Refusal::kDamaged;
   if (!(rung.confidence >= params_.min_confidence)) return Refusal::kLowConfidence;
@@ -155,6 +170,11 @@ Refusal GraspChoice::place(const LadderView& ladder, int rung_index, const Grasp
   const double home_m = lateral_sign(query.leg) * motion_.lateral_home_m;
   const double wish_m = (home_m - in_body(query, rung.end0_m).y()) / leftward;
 
+  std::optional<Interval> tried;
+  if (query.avoid_m) {
+    const double tried_m = target.rung_axis.dot(*query.avoid_m - rung.end0_m);
+    tried = {tried_m - params_.retry_distance_m, tried_m + params_.retry_distance_m};
+  }
   const double half_m = 0.5 * claw_.width_m + params_.claw_margin_m;
   bool any_stretch = false;
   std::optional<double> best_m;
@@ -164,8 +184,11 @@ Refusal GraspChoice::place(const LadderView& ladder, int rung_index, const Grasp
     const double low_m = stretch.from_m + half_m;
     const double high_m = stretch.to_m - half_m;
     if (!(low_m <= high_m + 1e-9)) continue;  // false for NaN; just wide enough is enough
-    const double here_m = std::max(low_m, std::min(wish_m, high_m));
-    if (!best_m || std::abs(here_m - wish_m) < std::abs(*best_m - wish_m)) best_m = here_m;
+    for (const Interval& part : without(tried, {low_m, high_m})) {
+      if (!(part.low_m <= part.high_m + 1e-9)) continue;
+      const double here_m = std::max(part.low_m, std::min(wish_m, part.high_m));
+      if (!best_m || std::abs(here_m - wish_m) < std::abs(*best_m - wish_m)) best_m = here_m;
+    }
   }
   if (!any_stretch) return Refusal::kNoStretch;
   if (!best_m) return Refusal::kStretchTooShort;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,6 +59,8 @@ struct GraspQuery {
   PerLeg<HeldPoint> held;
   Eigen::Vector3d from_m = Eigen::Vector3d::Zero();  ///< odom, where this foot is now, or was held
   int avoid_rung_id = -1;                            ///< tried in vain
+  int only_rung_id = -1;                             ///< no other is looked at
+  std::optional<Eigen::Vector3d> avoid_m;            ///< odom; nothing nearer than retry_distance_m
 };
 
 enum class Refusal : std::uint8_t {

@@ -63,6 +63,8 @@ class GraspConfirmation {
   /// A try without contact: contradiction when some witnesses say closed and others not.
   void conclude_missed();
 
+  /// Touch and jaw say so in this very cycle.
+  bool holds() const { return open_s_ <= 0.0; }
   /// A grasp that was confirmed and now lacks touch, or whose jaw left the window.
   bool is_lost() const { return open_s_ >= params_.lost_s; }
   bool is_touch_stuck() const { return stuck_s_ >= params_.stuck_s; }

@@ -2,16 +2,11 @@
 #include "climb/limb_cycle.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include <Eigen/LU>
 
 namespace climb {
 namespace {
 
 using S = LimbState;
-
-constexpr double kOpenWindow_rad = 0.1;
 
 }  // namespace
 
@@ -30,11 +25,13 @@ void LimbCycle::reset(const LimbInput& measured, bool holds) {
   state_ = holds ? S::kLoaded : S::kPregrasp;
   target_ = {measured.angles_rad, LegAngles::Zero(), measured.claw.jaw_rad, holds ? 1.0 : 0.0};
   jaw_goal_rad_ = holds ? claw_.closed_rad : measured.claw.jaw_rad;  // nothing opens unasked
-  moves_ = returned_ = failed_ = is_jaw_forced_ = false;
+  moves_ = parks_ = wants_goal_ = returned_ = failed_ = is_jaw_forced_ = false;
   if (!holds) held_rung_id_ = -1;
   home_.reset();
+  way_out_m_.reset();
   num_tries_ = 0;
-  spent_s_ = in_state_s_ = 0.0;
+  num_places_ = 1;
+  spent_s_ = in_state_s_ = waited_s_ = 0.0;
   confirmation_.forgive();
   move_joints(measured.angles_rad, 0.0);
 }
@@ -43,16 +40,13 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   const bool is_free = state_ == S::kPregrasp && !moves_;
   const bool may_begin = !failed_ && (state_ == S::kLoaded || is_free);
   if (!may_begin) return false;
-  home_.reset();
-  if (state_ == S::kLoaded) {
-    const Eigen::Vector3d held_m = kinematics_.foot_m(leg_, input_.angles_rad);
-    const Eigen::Vector3d out_m(0.0, 0.0, motion_.pregrasp_m);
-    home_ = LimbGoal{held_rung_id_, held_m + out_m, held_m};
-  }
+  remember_home();
   goal_ = goal;
   moves_ = true;
   returned_ = false;
+  way_out_m_.reset();
   num_tries_ = 0;
+  num_places_ = 1;
   spent_s_ = 0.0;
   if (state_ == S::kLoaded) return take(LimbEvent::kLift);
   // Where it stands after a reset: round a rung perhaps, then it is verified there; half closed,
@@ -60,6 +54,20 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   if (!is_open(input_)) state_ = confirmation_.witness().touch ? S::kClosing : S::kRegrasp;
   enter(S::kPregrasp);
   return true;
+}
+
+bool LimbCycle::park() {
+  if (state_ != S::kLoaded || !begin({})) return false;
+  parks_ = true;
+  return true;
+}
+
+void LimbCycle::remember_home() {
+  home_.reset();
+  if (state_ != S::kLoaded) return;
+  const Eigen::Vector3d held_m = kinematics_.foot_m(leg_, input_.angles_rad);
+  const Eigen::Vector3d out_m(0.0, 0.0, motion_.pregrasp_m);
+  home_ = LimbGoal{held_rung_id_, held_m + out_m, held_m};
 }
 
 bool LimbCycle::take(LimbEvent event) {
@@ -72,8 +80,9 @@ bool LimbCycle::take(LimbEvent event) {
 }
 
 void LimbCycle::enter(LimbState from) {
-  in_state_s_ = 0.0;
-  stage_ = 0;
+  in_state_s_ = waited_s_ = 0.0;
+  wants_goal_ = false;
+  stage_ = Stage::kOver;
   const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
   switch (state_) {
     case S::kUnloading:
@@ -86,10 +95,19 @@ void LimbCycle::enter(LimbState from) {
           foot_m + motion_.retract_m * kinematics_.retract_direction(leg_, target_.angles_rad),
           motion_.retract_m_s);
     case S::kTransit:
+      return move_foot(goal_.pregrasp_m, motion_.transit_m_s);
     case S::kPregrasp:
+      if (parks_) {
+        moves_ = false;
+        held_rung_id_ = -1;
+        return move_joints(target_.angles_rad, 0.0);
+      }
       jaw_goal_rad_ = claw_.open_rad;
-      return move_foot(goal_.pregrasp_m + approach_offset_m(), motion_.transit_m_s);
+      stage_ = way_out_m_ ? Stage::kOut : Stage::kOver;
+      return move_foot(way_out_m_.value_or(goal_.pregrasp_m + approach_offset_m()),
+                       motion_.transit_m_s);
     case S::kApproach:
+      way_out_m_ = foot_m;
       return move_foot(goal_.grasp_m + approach_offset_m(), motion_.approach_m_s);
     case S::kClosing:
       if (from == S::kReleasing) stay_home();  // opened a little and closed again
@@ -104,10 +122,12 @@ void LimbCycle::enter(LimbState from) {
       if (from == S::kUnloading) stay_home();
       return move_joints(input_.angles_rad, motion_.load_s);  // re-reference: never a step
     case S::kLoaded:
-      moves_ = false;
+      moves_ = parks_ = false;
+      way_out_m_.reset();
       target_.weight = 1.0;
       target_.velocity_rad_s.setZero();
       held_rung_id_ = goal_.rung_id;
+      lost_rung_id_ = -1;
       return;
     case S::kRegrasp:
       ++num_tries_;
@@ -116,28 +136,29 @@ void LimbCycle::enter(LimbState from) {
       return;
     case S::kAbortReturn:
       jaw_goal_rad_ = claw_.open_rad;
-      // Out of the new rung first, where the claw may be round it.
-      stage_ = from == S::kApproach || from == S::kRegrasp ? 0 : 1;
-      return move_joints(target_.angles_rad, 0.0);
+      stage_ = Stage::kSlowing;  // along the path that it is on
+      return;
     case S::kSupportLost:
       target_.weight = 0.0;
-      moves_ = false;
+      moves_ = parks_ = false;
+      lost_rung_id_ = held_rung_id_;
       return;
   }
 }
 
 void LimbCycle::step(const LimbInput& input) {
   input_ = input;
+  input_.stop = input.stop || failed_;  // it stays where it found nothing
   confirmation_.update(input.claw, input.dt_s);
-  if (moves_ && !input.stop) spent_s_ += input.dt_s;
-  if (!input.stop) in_state_s_ += input.dt_s;
-  move_jaw(input);
-  work(input);
+  if (moves_ && !input_.stop) spent_s_ += input.dt_s;
+  if (!input_.stop) in_state_s_ += input.dt_s;
+  move_jaw(input_);
+  work(input_);
+  keep_budget();
 }
 
 void LimbCycle::work(const LimbInput& input) {
   const bool arrived = advance(input);
-  const bool held_on = !input.stop;
   switch (state_) {
     case S::kLoaded:
       if (confirmation_.is_lost()) take(LimbEvent::kLost);
@@ -147,25 +168,23 @@ void LimbCycle::work(const LimbInput& input) {
       if (confirmation_.is_lost())
         take(LimbEvent::kLost);
       else if (arrived)
-        take(LimbEvent::kDone);
+        work_release(input, arrived);
       return;
     case S::kReleasing:
-      if (is_open(input) && in_state_s_ >= motion_.open_s && held_on) take(LimbEvent::kDone);
-      return;
+      return work_release(input, arrived);
     case S::kRetracting:
+      if (arrived) take(parks_ ? LimbEvent::kPark : LimbEvent::kDone);
+      return;
     case S::kTransit:
     case S::kApproach:
       if (arrived) take(LimbEvent::kDone);
       return;
     case S::kPregrasp:
-      if (moves_ && arrived && is_open(input) && in_state_s_ >= motion_.settle_s) {
-        take(LimbEvent::kDone);
-      }
-      return;
+      return work_pregrasp(input, arrived);
     case S::kClosing:
       return finish_closing(input);
     case S::kVerify:
-      if (arrived) finish_pull(input);
+      if (arrived || (!input.stop && pull_N(input) >= motion_.pull_test_max_N)) finish_pull(input);
       return;
     case S::kLoading:
       target_.weight = std::max(target_.weight, path_part());
@@ -175,20 +194,86 @@ void LimbCycle::work(const LimbInput& input) {
         take(LimbEvent::kDone);
       return;
     case S::kRegrasp:
-      if (!held_on || !is_open(input)) return;
-      if (num_tries_ < params_.max_tries && spent_s_ < params_.budget_s) {
-        take(LimbEvent::kDone);
-      } else if (home_ && !returned_) {
-        take(LimbEvent::kGiveUp);
-      } else {
-        failed_ = true;  // it stands here, open, in front of a rung that does not hold
-      }
-      return;
+      return work_regrasp(input);
     case S::kAbortReturn:
-      return return_home(input);
+      return return_home(input, arrived);
     case S::kSupportLost:
       return;
   }
+}
+
+void LimbCycle::work_release(const LimbInput& input, bool arrived) {
+  if (input.stop) return;
+  if (state_ == S::kUnloading) {
+    // The jaw opens only while the three others hold in this very cycle (invariant 3).
+    if (arrived && input.others_hold)
+      take(LimbEvent::kDone);
+    else if ((waited_s_ += input.dt_s) >= params_.others_timeout_s)
+      take(LimbEvent::kAbort);
+    return;
+  }
+  if (is_open(input) && in_state_s_ >= motion_.open_s)
+    take(LimbEvent::kDone);
+  else if (in_state_s_ >= params_.open_timeout_s)
+    take(LimbEvent::kAbort);  // a jaw that does not open holds still
+}
+
+void LimbCycle::work_pregrasp(const LimbInput& input, bool arrived) {
+  if (!moves_ || !arrived) return;
+  if (stage_ == Stage::kOut) {
+    stage_ = Stage::kOver;
+    way_out_m_.reset();
+    move_foot(goal_.pregrasp_m + approach_offset_m(), motion_.transit_m_s);
+  } else if (is_open(input)) {
+    if (in_state_s_ >= motion_.settle_s) take(LimbEvent::kDone);
+  } else if (waits_too_long(input)) {
+    failed_ = true;
+  }
+}
+
+void LimbCycle::work_regrasp(const LimbInput& input) {
+  if (input.stop) return;
+  if (!is_open(input)) {
+    failed_ = waits_too_long(input);  // half open, in front of a rung that does not hold
+    return;
+  }
+  const bool is_first_place = num_places_ == 1;
+  const int max_tries = is_first_place ? params_.max_tries : params_.max_tries_elsewhere;
+  if (is_over_budget())
+    give_up();
+  else if (num_tries_ < max_tries)
+    take(LimbEvent::kDone);
+  else if (returned_)
+    failed_ = true;  // it stands here, open, in front of a rung that does not hold
+  else
+    wants_goal_ = true;
+}
+
+void LimbCycle::retarget(const LimbGoal& goal) {
+  if (!wants_goal_) return;
+  goal_ = goal;
+  num_tries_ = 0;
+  ++num_places_;
+  take(LimbEvent::kDone);
+}
+
+void LimbCycle::give_up() {
+  if (!home_ || returned_ || !take(LimbEvent::kGiveUp)) failed_ = true;
+}
+
+void LimbCycle::put_down(const LimbGoal& goal) {
+  is_jaw_forced_ = false;
+  spent_s_ = 0.0;
+  const bool is_at_rung = state_ == S::kApproach || state_ == S::kClosing || state_ == S::kVerify ||
+                          state_ == S::kLoading;
+  if (!moves_ || is_at_rung) return;
+  const bool is_on_its_rung = state_ == S::kUnloading || state_ == S::kReleasing;
+  if (!is_on_its_rung) home_ = goal;
+  returned_ = false;
+  if (state_ == S::kAbortReturn)
+    enter(S::kAbortReturn);
+  else if (!take(LimbEvent::kAbort))
+    take(LimbEvent::kGiveUp);
 }
 
 void LimbCycle::finish_closing(const LimbInput& input) {
@@ -198,7 +283,7 @@ void LimbCycle::finish_closing(const LimbInput& input) {
     return;
   }
   const bool is_empty = input.claw.jaw_rad <= claw_.closed_rad + params_.empty_window_rad;
-  const bool is_late = in_state_s_ >= params_.close_timeout_s;
+  const bool is_late = in_state_s_ >= params_.close_timeout_s || is_over_budget();
   if (is_late || (is_empty && in_state_s_ >= 2.0 * motion_.close_s)) {
     last_witness_ = confirmation_.witness();
     confirmation_.conclude_missed();
@@ -209,91 +294,50 @@ void LimbCycle::finish_closing(const LimbInput& input) {
 void LimbCycle::finish_pull(const LimbInput& input) {
   const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
   const Eigen::Vector3d moved_m = kinematics_.foot_m(leg_, input.angles_rad) - from_m;
-  // tau = -J^T f of the rung on the foot: the change since the pull began.
-  const Eigen::Matrix3d J = kinematics_.jacobian(leg_, input.angles_rad);
-  const LegAngles change_Nm = input.torques_Nm - torques_before_Nm_;
-  const Eigen::Vector3d force_N = J.transpose().inverse() * change_Nm;
-  last_witness_ = confirmation_.conclude({moved_m.z(), force_N.norm()});
+  last_witness_ = confirmation_.conclude({moved_m.z(), pull_N(input)});
   take(last_witness_.all() ? LimbEvent::kDone : LimbEvent::kMissed);
+}
+
+void LimbCycle::keep_budget() {
+  if (!moves_ || failed_ || !is_over_budget()) return;
+  const bool is_searching =
+      state_ == S::kTransit || state_ == S::kPregrasp || state_ == S::kApproach;
+  if (!is_searching) return;  // a rung in the claw is verified; everything else is short
+  if (!home_ || returned_ || !take(LimbEvent::kAbort)) failed_ = true;
 }
 
 void LimbCycle::stay_home() {
   goal_ = home_.value_or(goal_);
   returned_ = true;
+  parks_ = false;
+  num_tries_ = 0;
+  num_places_ = 1;
+  spent_s_ = 0.0;
 }
 
-void LimbCycle::return_home(const LimbInput& input) {
+void LimbCycle::return_home(const LimbInput& input, bool arrived) {
   if (input.stop) return;
-  const double duration_s = line_ ? line_->duration_s() : segment_.duration_s();
-  const bool arrived = clock_.path_time_s() >= duration_s;
-  if (stage_ == 0) {
-    move_foot(goal_.pregrasp_m, motion_.retract_m_s);
-    stage_ = 1;
-  } else if (stage_ == 1 && arrived) {
-    stay_home();
-    num_tries_ = 0;
-    move_foot(goal_.pregrasp_m, motion_.transit_m_s);
-    stage_ = 2;
-  } else if (stage_ == 2 && arrived) {
-    take(LimbEvent::kDone);
+  switch (stage_) {
+    case Stage::kSlowing:
+      if (!clock_.stands()) return;
+      stage_ = Stage::kOut;
+      return move_foot(way_out_m_.value_or(kinematics_.foot_m(leg_, target_.angles_rad)),
+                       motion_.retract_m_s);
+    case Stage::kOut:
+      if (!arrived) return;
+      stay_home();
+      way_out_m_.reset();
+      stage_ = Stage::kOver;
+      return move_foot(goal_.pregrasp_m, motion_.transit_m_s);
+    case Stage::kOver:
+      if (arrived) take(LimbEvent::kDone);
+      return;
   }
 }
 
-void LimbCycle::follow(const JointSample& sample, double rate) {
-  if (state_ != S::kLoaded) return;
-  target_.angles_rad = sample.angles_rad;
-  target_.velocity_rad_s = rate * sample.velocity_rad_s;
-  move_joints(sample.angles_rad, 0.0);
-}
-
-void LimbCycle::move_joints(const LegAngles& to_rad, double min_duration_s) {
-  line_.reset();
-  segment_ =
-      JointSegment(target_.angles_rad, kinematics_.clamped(leg_, to_rad), limits_, min_duration_s);
-  clock_.restart();
-}
-
-void LimbCycle::move_foot(const Eigen::Vector3d& to_m, double speed_m_s) {
-  const Eigen::Vector3d from_m = kinematics_.foot_m(leg_, target_.angles_rad);
-  line_.emplace(kinematics_, leg_, from_m, to_m, LineSpeed{speed_m_s, motion_.cartesian_m_s2});
-  clock_.restart();
-  if (line_->reach() == Reach::kReachable) return;
-  const LegSolution end = kinematics_.inverse(leg_, to_m);
-  move_joints(end.reachable() ? end.angles_rad : target_.angles_rad, 0.0);
-}
-
-bool LimbCycle::advance(const LimbInput& input) {
-  if (state_ == S::kLoaded || state_ == S::kSupportLost) return false;
-  const auto follow_path = [&](const auto& path) {
-    clock_.advance(input.dt_s, input.stop, path, limits_);
-    const JointSample sample = path.at(clock_.path_time_s());
-    target_.angles_rad = sample.angles_rad;
-    target_.velocity_rad_s = clock_.rate() * sample.velocity_rad_s;
-    return clock_.path_time_s() >= path.duration_s() && !input.stop;
-  };
-  return line_ ? follow_path(*line_) : follow_path(segment_);
-}
-
-double LimbCycle::path_part() const {
-  const double duration_s = line_ ? line_->duration_s() : segment_.duration_s();
-  return duration_s > 0.0 ? std::min(1.0, clock_.path_time_s() / duration_s) : 1.0;
-}
-
-void LimbCycle::move_jaw(const LimbInput& input) {
-  if (input.stop && !is_jaw_forced_) return;
-  const double goal_rad = is_jaw_forced_ ? claw_.closed_rad : jaw_goal_rad_;
-  const double step_rad = params_.jaw_speed_rad_s * input.dt_s;
-  target_.jaw_rad += std::clamp(goal_rad - target_.jaw_rad, -step_rad, step_rad);
-}
-
-bool LimbCycle::is_open(const LimbInput& input) const {
-  return input.claw.jaw_rad >= claw_.open_rad - kOpenWindow_rad;
-}
-
-Eigen::Vector3d LimbCycle::approach_offset_m() const {
-  // The first try at the point itself, then a little to the left, then to the right.
-  const double side = num_tries_ == 0 ? 0.0 : (num_tries_ % 2 == 1 ? 1.0 : -1.0);
-  return {0.0, side * params_.try_offset_m, 0.0};
+bool LimbCycle::waits_too_long(const LimbInput& input) {
+  waited_s_ += input.dt_s;
+  return waited_s_ >= params_.open_timeout_s;
 }
 
 }  // namespace climb

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One limb through one step, driven by the table of limb_state.h: unload, release, retract,
-// transit, approach, close, verify, load; again, or back to the old rung. The body stands still
-// meanwhile, so all points are in the body frame. Whether the limb may be lifted is not asked here.
+// transit, approach, close, verify, load; again, elsewhere, or back to the old rung; each of it in
+// bounded time. The body stands still meanwhile, so all points are in the body frame. Whether the
+// limb may be lifted, and where else to try, is not decided here.
 #pragma once
 
 #include <optional>
+#include <string>
+
+#include <Eigen/Geometry>
 
 #include <Eigen/Geometry>
 
@@ -28,7 +32,8 @@ struct LimbInput {
   ClawReading claw;
   /// By the other feet: on the ladder the body gives way when this one pulls.
   Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
-  bool stop = false;  ///< slow down along the path and stand
+  bool stop = false;        ///< slow down along the path and stand
+  bool others_hold = true;  ///< the three others, in this very cycle: else it is not released
   double dt_s = 0.01;
 };
 
@@ -42,11 +47,17 @@ struct LimbTarget {
 struct LimbParams {
   double jaw_speed_rad_s = 5.0;    ///< of the jaw's target (own)
   double close_timeout_s = 2.0;    ///< without touch (contract)
-  double budget_s = 20.0;          ///< of all tries (contract)
-  int max_tries = 3;               ///< on one rung: the first and two more (contract)
+  double open_timeout_s = 1.0;     ///< for a jaw to stand open (own: it takes 0.35)
+  double others_timeout_s = 0.5;   ///< for the others to hold before it is released (own)
+  double budget_s = 20.0;          ///< of all tries; then once more for the way back (contract)
+  int max_tries = 3;               ///< at the first place: as planned and two more (contract)
+  int max_tries_elsewhere = 1;     ///< at each further place: the budget allows no more (own)
   double try_offset_m = 0.010;     ///< along the rung, one to the left, one to the right (contract)
   double empty_window_rad = 0.06;  ///< a jaw so near its stop has closed on nothing (own)
 };
+
+/// "" or the violated relation, naming the field.
+std::string check(const LimbParams& params);
 
 class LimbCycle {
  public:
@@ -59,8 +70,19 @@ class LimbCycle {
   /// The next step, or from the dock the first grasp. False: not in this state.
   bool begin(const LimbGoal& goal);
 
+  /// Off its rung and open, to stay so: in the dock, before the drives are switched off.
+  bool park();
+
   /// Back to the old rung, where that is still possible (before the rung is touched).
   bool abort() { return take(LimbEvent::kAbort); }
+
+  /// The tries at this place are used up: the answer is retarget() or give_up().
+  bool wants_goal() const { return wants_goal_; }
+  void retarget(const LimbGoal& goal);
+  void give_up();  ///< back to the old rung, if there is one
+
+  /// From the air down to `goal`, whatever was planned. A limb at a rung goes on with that.
+  void put_down(const LimbGoal& goal);
 
   /// One cycle; target() is new afterwards.
   void step(const LimbInput& input);
@@ -72,26 +94,40 @@ class LimbCycle {
   const LimbTarget& target() const { return target_; }
   const GraspConfirmation& confirmation() const { return confirmation_; }
   GraspWitness last_witness() const { return last_witness_; }
-  int rung_id() const { return held_rung_id_; }  ///< of the last confirmed grasp
+  int rung_id() const { return held_rung_id_; }       ///< of the last confirmed grasp
+  int lost_rung_id() const { return lost_rung_id_; }  ///< that gave way; -1 once another holds
   const LimbGoal& goal() const { return goal_; }
-  bool moves() const { return moves_; }  ///< between begin() and LOADED
+  const std::optional<LimbGoal>& home() const { return home_; }  ///< the old rung
+  int num_places() const { return num_places_; }                 ///< tried in this step
+  bool moves() const { return moves_; }                          ///< between begin() and LOADED
   bool returned() const { return returned_; }
   bool failed() const { return failed_; }  ///< no grasp, not even on the old rung
   void close_jaw() { is_jaw_forced_ = true; }
 
  private:
+  enum class Stage : std::uint8_t { kSlowing, kOut, kOver };  ///< of a way in parts
+
   bool take(LimbEvent event);
   void enter(LimbState from);
   void work(const LimbInput& input);
+  void work_release(const LimbInput& input, bool arrived);
+  void work_pregrasp(const LimbInput& input, bool arrived);
+  void work_regrasp(const LimbInput& input);
+  void finish_closing(const LimbInput& input);
+  void finish_pull(const LimbInput& input);
+  void return_home(const LimbInput& input, bool arrived);
+  void keep_budget();
+  void remember_home();
+  void stay_home();
+  double pull_N(const LimbInput& input) const;
+  bool waits_too_long(const LimbInput& input);
+
   void move_foot(const Eigen::Vector3d& to_m, double speed_m_s);
   void move_joints(const LegAngles& to_rad, double min_duration_s);
   bool advance(const LimbInput& input);
   void move_jaw(const LimbInput& input);
-  void finish_closing(const LimbInput& input);
-  void finish_pull(const LimbInput& input);
-  void stay_home();
-  void return_home(const LimbInput& input);
   bool is_open(const LimbInput& input) const;
+  bool is_over_budget() const { return spent_s_ >= params_.budget_s; }
   double path_part() const;
   Eigen::Vector3d approach_offset_m() const;
 
@@ -107,22 +143,28 @@ class LimbCycle {
   LimbTarget target_;
   LimbInput input_;
   LimbGoal goal_;
-  std::optional<LimbGoal> home_;  ///< the old rung
+  std::optional<LimbGoal> home_;
   std::optional<FootLine> line_;  ///< the path, if straight; else segment_
   JointSegment segment_;
   PathClock clock_;
   double jaw_goal_rad_ = 0.0;
   double in_state_s_ = 0.0;
+  double waited_s_ = 0.0;  ///< for the jaw or the others, in this state
   double spent_s_ = 0.0;
-  int num_tries_ = 0;
-  int stage_ = 0;  ///< of a path in two parts
+  int num_tries_ = 0;   ///< at this place
+  int num_places_ = 1;  ///< in this step
+  Stage stage_ = Stage::kOver;
+  std::optional<Eigen::Vector3d> way_out_m_;  ///< where the approach began, while it is at a rung
   int held_rung_id_ = -1;
+  int lost_rung_id_ = -1;
   bool moves_ = false;
+  bool parks_ = false;
+  bool wants_goal_ = false;
   bool returned_ = false;
   bool failed_ = false;
   bool is_jaw_forced_ = false;
   GraspWitness last_witness_;
-  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();  ///< odom
+  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();  ///< odom  ///< odom
   LegAngles torques_before_Nm_ = LegAngles::Zero();
 };
 

@@ -37,7 +37,8 @@ constexpr LimbTransition kTransitions[] = {
 
     {S::kLoaded, E::kLost, S::kSupportLost},
     {S::kUnloading, E::kLost, S::kSupportLost},
-    {S::kSupportLost, E::kRecapture, S::kRegrasp},
+
+    {S::kRetracting, E::kPark, S::kPregrasp},
 };
 
 }  // namespace
@@ -50,8 +51,8 @@ const char* name(LimbState state) {
 }
 
 const char* name(LimbEvent event) {
-  constexpr const char* kNames[kNumLimbEvents] = {"lift",    "done", "abort",    "missed",
-                                                  "give up", "lost", "recapture"};
+  constexpr const char* kNames[kNumLimbEvents] = {"lift",    "done", "abort", "missed",
+                                                  "give up", "lost", "park"};
   return kNames[static_cast<int>(event)];
 }
 

@@ -29,15 +29,15 @@ inline constexpr int kNumLimbStates = static_cast<int>(LimbState::kSupportLost) 
 const char* name(LimbState state);
 
 enum class LimbEvent : std::uint8_t {
-  kLift,      ///< this limb's turn
-  kDone,      ///< what the state does is finished
-  kAbort,     ///< the target is withdrawn: back to the old rung
-  kMissed,    ///< no grasp there
-  kGiveUp,    ///< tries are used up: back to the old rung
-  kLost,      ///< a grasp that was confirmed is none
-  kRecapture  ///< after a reset: try again near where it was
+  kLift,    ///< this limb's turn
+  kDone,    ///< what the state does is finished
+  kAbort,   ///< the target is withdrawn, or a time is over: back to the old rung
+  kMissed,  ///< no grasp there
+  kGiveUp,  ///< tries are used up: back to the old rung
+  kLost,    ///< a grasp that was confirmed is none
+  kPark     ///< in the dock: the claw is off and stays open
 };
-inline constexpr int kNumLimbEvents = static_cast<int>(LimbEvent::kRecapture) + 1;
+inline constexpr int kNumLimbEvents = static_cast<int>(LimbEvent::kPark) + 1;
 
 const char* name(LimbEvent event);
 

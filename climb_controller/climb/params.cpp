@@ -147,6 +147,8 @@ std::string check(const GraspChoiceParams& p) {
       {in(p.min_joint_margin_rad, 0.0, 1.0), "min_joint_margin_rad must be 0..1"},
       {in(p.min_sigma_J_m, 0.0, 1.0), "min_sigma_J_m must be 0..1"},
       {in(p.claw_clearance_m, 0.0, 1.0), "claw_clearance_m must be 0..1"},
+      {in(p.same_rung_m, 0.0, 0.5 * p.min_step_m), "same_rung_m must be 0..min_step_m / 2"},
+      {in(p.retry_distance_m, 0.0, 1.0), "retry_distance_m must be 0..1"},
       {in(p.num_approach_points, 0, 1000), "num_approach_points must be 0..1000"},
       {in(p.lateral_cost, 0.0, 1e3), "lateral_cost must be 0..1000"},
       {in(p.step_cost, 0.0, 1e3), "step_cost must be 0..1000"},

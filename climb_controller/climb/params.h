@@ -117,7 +117,9 @@ struct GraspChoiceParams {
   double max_step_m = 0.45;           ///< ... and at most (own)
   double min_joint_margin_rad = 0.1;  ///< from every joint limit
   double min_sigma_J_m = 0.03;        ///< least singular value of the Jacobian [m/rad] (own)
+  double same_rung_m = 0.07;          ///< a foot so near a rung is on it (own: half a least step)
   double claw_clearance_m = 0.06;     ///< between two claws on one rung, middle to middle (own)
+  double retry_distance_m = 0.035;    ///< to a place that was tried in vain (own: a claw's width)
   int num_approach_points = 6;        ///< checked between pregrasp and grasp (own)
   // Cost of a candidate [m]: the smallest wins, ties go to the lower rung id.
   double lateral_cost = 1.0;        ///< per metre from the lateral home (own)

@@ -2,6 +2,7 @@
 #include "climb/step_planner.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace climb {
 namespace {
@@ -9,10 +10,22 @@ namespace {
 constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
-constexpr double kMaxCentring_m = 0.02;  ///< in one body shift
+constexpr double kInPlace_m = 0.008;     ///< a body so near to where a step wants it is not shifted
+constexpr double kMaxSideways_m = 0.02;  ///< of one shift, across the ladder and out of it
 
 double height_m(const RungView& rung) {
   return 0.5 * (rung.end0_m.z() + rung.end1_m.z());
+}
+
+bool is_usable(const RungView& rung) {
+  return rung.trusted && rung.end0_m.allFinite() && rung.end1_m.allFinite();
+}
+
+double distance_m(const RungView& rung, const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d along_m = rung.end1_m - rung.end0_m;
+  const double length2 = along_m.squaredNorm();
+  const double part = length2 > 0.0 ? along_m.dot(point_m - rung.end0_m) / length2 : 0.0;
+  return (rung.end0_m + std::clamp(part, 0.0, 1.0) * along_m - point_m).norm();
 }
 
 }  // namespace
@@ -27,16 +40,53 @@ PlannedStep StepPlanner::dock(Leg leg, const RobotNow& now, const LadderView& la
   GraspQuery query;
   query.leg = leg;
   query.T_odom_body = now.pose.T_odom_body();
-  const Eigen::Vector3d foot_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
-  query.from_m = query.T_odom_body * foot_m -
-                 kLookFromBelow_m * (query.T_odom_body.linear() * Eigen::Vector3d::UnitX());
+  query.from_m = docked_from_m(leg, now);
   return choose(query, now, ladder);
 }
 
-PlannedStep StepPlanner::next(bool upwards, bool shifted, const RobotNow& now,
+Eigen::Vector3d StepPlanner::docked_from_m(Leg leg, const RobotNow& now) const {
+  const Eigen::Vector3d below_m(-kLookFromBelow_m, 0.0, 0.0);
+  const Eigen::Vector3d foot_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+  return now.pose.T_odom_body() * Eigen::Vector3d(foot_m + below_m);
+}
+
+bool StepPlanner::offers(int rung_id, const Eigen::Vector3d& place_m,
+                         const LadderView& ladder) const {
+  for (const StretchView& stretch : ladder.stretches) {
+    const bool is_known = stretch.rung_index >= 0 && stretch.rung_index < std::ssize(ladder.rungs);
+    if (!is_known) continue;
+    const RungView& rung = ladder.rungs[stretch.rung_index];
+    if (rung.id != rung_id || !is_usable(rung) || rung.damaged) continue;
+    const Eigen::Vector3d axis = (rung.end1_m - rung.end0_m).normalized();
+    const double along_m = axis.dot(place_m - rung.end0_m);
+    const double slack_m = params_.robot.claw.capture_m;
+    const bool is_on_stretch =
+        along_m >= stretch.from_m - slack_m && along_m <= stretch.to_m + slack_m;
+    if (is_on_stretch && distance_m(rung, place_m) <= slack_m) return true;
+  }
+  return false;
+}
+
+bool StepPlanner::rests_safely(const RobotNow& now) const {
+  Stance stance = now.stance;
+  PerLeg<double> along_m;
+  for (const Leg leg : kLegs) {
+    if (!is_confirmed(now.limbs[leg])) return false;
+    along_m[leg] = kinematics_.foot_m(leg, stance.angles_rad[leg]).x();
+    // Feet of the same height share a rung, whatever number perception gave it.
+    stance.contacts[leg].rung_id = leg;
+    for (int other = 0; other < leg; ++other) {
+      const bool same = std::abs(along_m[leg] - along_m[other]) <= params_.grasp.same_rung_m;
+      if (same) stance.contacts[leg].rung_id = stance.contacts[other].rung_id;
+    }
+  }
+  return support_.check_rung_loss(stance).survives;
+}
+
+PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
                               const LadderView& ladder) {
   PlannedStep step;
-  step.leg = next_leg(last_leg_, upwards);
+  step.leg = next_leg_of(upwards);
   if (upwards && is_at_top(now, ladder)) {
     step.at_top = true;
     return step;
@@ -49,34 +99,59 @@ PlannedStep StepPlanner::next(bool upwards, bool shifted, const RobotNow& now,
     step.burden = verdict.burden == Burden::kBorne ? Burden::kGrip : verdict.burden;
     return step;
   }
-  const Eigen::Vector3d along_body(body_shift_m(spacing_m(ladder), upwards), 0.0, 0.0);
-  GraspQuery query;
-  query.leg = step.leg;
-  query.upwards = upwards;
-  query.T_odom_body = now.pose.T_odom_body();
-  const Eigen::Vector3d foot_m = kinematics_.foot_m(step.leg, now.stance.angles_rad[step.leg]);
-  query.from_m = query.T_odom_body * foot_m;
-  for (const Leg leg : kLegs) {
-    const Eigen::Vector3d held_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
-    query.held[leg] = {leg != step.leg, query.T_odom_body * held_m};
-  }
-  query.next_shift_m = query.T_odom_body.linear() * along_body;
-  const Eigen::Vector3d shift_body = along_body + centring_m(now);
-  if (!shifted) query.T_odom_body.pretranslate(query.T_odom_body.linear() * shift_body);
+  GraspQuery query = query_of(step.leg, upwards, now);
+  const Eigen::Vector3d ahead(body_shift_m(spacing_m(ladder), upwards), 0.0, 0.0);
+  query.next_shift_m = query.T_odom_body.linear() * ahead;
+  Eigen::Vector3d first_m = Eigen::Vector3d::Zero();
+  if (may_shift) first_m = shift_m(upwards, now, ladder);
+  query.T_odom_body.pretranslate(query.T_odom_body.linear() * first_m);
   PlannedStep chosen = choose(query, now, ladder);
-  chosen.shift_m = shifted ? Eigen::Vector3d::Zero() : shift_body;
+  chosen.shift_m = first_m;
   return chosen;
 }
 
-Eigen::Vector3d StepPlanner::centring_m(const RobotNow& now) const {
-  // Each pull test draws the body a little towards the ladder.
+PlannedStep StepPlanner::again(const Retry& retry, const RobotNow& now, const LadderView& ladder) {
+  GraspQuery query = query_of(retry.leg, retry.upwards, now);
+  query.from_m = retry.from_m;
+  if (retry.other_rung) {
+    query.avoid_rung_id = retry.tried_rung_id;
+  } else {
+    query.only_rung_id = retry.tried_rung_id;
+    query.avoid_m = retry.tried_m;
+  }
+  return choose(query, now, ladder);
+}
+
+Leg StepPlanner::next_leg_of(bool upwards) const {
+  return upwards == last_upwards_ ? next_leg(last_leg_, upwards) : last_leg_;
+}
+
+GraspQuery StepPlanner::query_of(Leg leg, bool upwards, const RobotNow& now) const {
+  GraspQuery query;
+  query.leg = leg;
+  query.upwards = upwards;
+  query.T_odom_body = now.pose.T_odom_body();
+  for (const Leg other : kLegs) {
+    const Eigen::Vector3d foot_m = kinematics_.foot_m(other, now.stance.angles_rad[other]);
+    query.held[other] = {other != leg, query.T_odom_body * foot_m};
+  }
+  query.from_m = query.held[leg].position_m;
+  return query;
+}
+
+Eigen::Vector3d StepPlanner::shift_m(bool upwards, const RobotNow& now,
+                                     const LadderView& ladder) const {
+  // Before a step the body is a quarter of the rungs' distance ahead of the middle of its feet.
+  // Told from the feet, not summed up: whatever was interrupted or sagged is made good.
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
   for (const Leg leg : kLegs) {
-    middle_m += kinematics_.foot_m(leg, now.stance.angles_rad[leg]) / kNumLegs;
+    middle_m += 0.25 * kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
   }
-  const double out_m = middle_m.z() + params_.motion.stand_off_m;
-  return {0.0, std::clamp(middle_m.y(), -kMaxCentring_m, kMaxCentring_m),
-          std::clamp(out_m, -kMaxCentring_m, kMaxCentring_m)};
+  const double off_m = middle_m.z() + params_.motion.stand_off_m;
+  const Eigen::Vector3d shift_m(middle_m.x() + body_shift_m(spacing_m(ladder), upwards),
+                                std::clamp(middle_m.y(), -kMaxSideways_m, kMaxSideways_m),
+                                std::clamp(off_m, -kMaxSideways_m, kMaxSideways_m));
+  return shift_m.norm() > kInPlace_m ? shift_m : Eigen::Vector3d(0.0, 0.0, 0.0);
 }
 
 PlannedStep StepPlanner::choose(GraspQuery query, const RobotNow& now, const LadderView& ladder) {
@@ -99,7 +174,7 @@ double StepPlanner::spacing_m(const LadderView& ladder) const {
   double high_m = 0.0;
   int num_rungs = 0;
   for (const RungView& rung : ladder.rungs) {
-    if (!rung.trusted) continue;
+    if (!is_usable(rung)) continue;
     low_m = num_rungs == 0 ? height_m(rung) : std::min(low_m, height_m(rung));
     high_m = num_rungs == 0 ? height_m(rung) : std::max(high_m, height_m(rung));
     ++num_rungs;
@@ -112,11 +187,17 @@ double StepPlanner::spacing_m(const LadderView& ladder) const {
 bool StepPlanner::is_at_top(const RobotNow& now, const LadderView& ladder) const {
   const RungView* top = nullptr;
   for (const RungView& rung : ladder.rungs) {
-    if (rung.trusted && (top == nullptr || height_m(rung) > height_m(*top))) top = &rung;
+    if (is_usable(rung) && (top == nullptr || height_m(rung) > height_m(*top))) top = &rung;
   }
   if (top == nullptr) return false;
-  return now.stance.contacts[kFrontLeft].rung_id == top->id &&
-         now.stance.contacts[kFrontRight].rung_id == top->id;
+  // By place, not by number: perception that starts anew counts its rungs anew.
+  const Eigen::Isometry3d T_odom_body = now.pose.T_odom_body();
+  for (const Leg leg : {kFrontLeft, kFrontRight}) {
+    const Eigen::Vector3d foot_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+    const bool on_top = distance_m(*top, T_odom_body * foot_m) <= params_.grasp.same_rung_m;
+    if (!is_confirmed(now.limbs[leg]) || !on_top) return false;
+  }
+  return true;
 }
 
 }  // namespace climb

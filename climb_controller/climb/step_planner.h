@@ -10,7 +10,7 @@ namespace climb {
 
 struct PlannedStep {
   Leg leg = kRearRight;
-  bool ready = false;
+  bool ready = false;                ///< goal (and shift) are set
   bool at_top = false;               ///< both front claws hold the highest trusted rung
   Refusal refusal = Refusal::kNone;  ///< when not ready
   Burden burden = Burden::kBorne;    ///< when not ready and nothing is refused
@@ -25,6 +25,16 @@ struct RobotNow {
   OdometryEstimate pose;
 };
 
+/// A limb in the air that found no grasp.
+struct Retry {
+  Leg leg = kRearRight;
+  bool upwards = true;
+  bool other_rung = false;
+  int tried_rung_id = -1;
+  Eigen::Vector3d tried_m = Eigen::Vector3d::Zero();  ///< odom
+  Eigen::Vector3d from_m = Eigen::Vector3d::Zero();   ///< odom, where it was held
+};
+
 class StepPlanner {
  public:
   explicit StepPlanner(const ClimbParams& params);
@@ -32,16 +42,34 @@ class StepPlanner {
   /// A free limb to the rung nearest before it.
   PlannedStep dock(Leg leg, const RobotNow& now, const LadderView& ladder);
 
-  /// The next step of the crawl. `shifted`: the body is already where the step wants it.
-  PlannedStep next(bool upwards, bool shifted, const RobotNow& now, const LadderView& ladder);
+  /// The next step of the crawl, with the body shift that it wants first (zero: it is in place).
+  /// may_shift false: from where the body is.
+  PlannedStep next(bool upwards, bool may_shift, const RobotNow& now, const LadderView& ladder);
 
-  /// The step was made (or given up): the next leg is on.
-  void made(Leg leg) { last_leg_ = leg; }
+  /// After vain tries at `tried` (odom): another place on that rung or, if `other_rung`, another
+  /// one.
+  PlannedStep again(const Retry& retry, const RobotNow& now, const LadderView& ladder);
+
+  /// Does the ladder still offer this place (odom) on that rung?
+  bool offers(int rung_id, const Eigen::Vector3d& place_m, const LadderView& ladder) const;
+
+  /// All four claws hold, and any one rung may break without a fall.
+  bool rests_safely(const RobotNow& now) const;
+
+  /// From where a claw in the dock looks upwards for its first rung, odom.
+  Eigen::Vector3d docked_from_m(Leg leg, const RobotNow& now) const;
+
+  /// The step was made: the next leg is on. On the way back the last one goes first.
+  void made(Leg leg, bool upwards) {
+    last_leg_ = leg;
+    last_upwards_ = upwards;
+  }
 
  private:
+  Leg next_leg_of(bool upwards) const;
+  GraspQuery query_of(Leg leg, bool upwards, const RobotNow& now) const;
+  Eigen::Vector3d shift_m(bool upwards, const RobotNow& now, const LadderView& ladder) const;
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
-  /// Body shift that brings the body back to its stand-off and between its feet, body frame.
-  Eigen::Vector3d centring_m(const RobotNow& now) const;
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;
 
@@ -50,6 +78,7 @@ class StepPlanner {
   Support support_;
   GraspChoice choice_;
   Leg last_leg_ = kFrontLeft;
+  bool last_upwards_ = true;
 };
 
 }  // namespace climb

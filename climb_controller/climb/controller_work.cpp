@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the controller does in each of its states: boot, arming, climbing step by step, standing.
+#include "climb/controller.h"
+
+namespace climb {
+
+using S = ControllerState;
+using E = ControllerEvent;
+
+void Controller::work(const ControllerInput& input) {
+  if (following_ && !input.drives_enabled) following_ = false;  // the drives hold by themselves
+  boot(input);
+  if (state_ == S::kArming) work_arming(input);
+  if (state_ == S::kClimbing) work_climbing(input);
+  move(input);
+  const bool is_down = !input.drives_enabled && in_state_s_ > params_.gate.period_s;
+  if (state_ == S::kDisarming && is_down) take(E::kDisarmed);
+}
+
+void Controller::boot(const ControllerInput& input) {
+  const bool heard = (faults_ & flag(Fault::kServoSilent)) == 0 && input.imu.valid;
+  if (state_ == S::kBoot && heard) take(E::kBooted);
+  if (state_ != S::kSelftest) return;
+  if (action_.reaction != Reaction::kNothing) in_state_s_ = 0.0;
+  if (in_state_s_ >= params_.selftest_s) take(E::kSelftestPassed);
+}
+
+void Controller::work_arming(const ControllerInput& input) {
+  if (!following_) {
+    if (input.drives_enabled)
+      start_following(input);
+    else if (in_state_s_ > params_.enable_timeout_s)
+      take(E::kArmingRefused);
+    return;
+  }
+  if (const std::optional<Leg> leg = moving_leg()) return search(*leg, input);
+  for (const Leg leg : kLegs) {
+    if (limbs_[leg].state() == LimbState::kLoaded) continue;
+    plan_ = planner_.dock(leg, robot_now(input), ladder_of(input));
+    if (plan_.ready)
+      limbs_[leg].begin(plan_.goal);
+    else if (in_state_s_ > params_.dock_timeout_s)
+      take(E::kArmingRefused);
+    return;
+  }
+  hangs_ = true;
+  take(E::kArmed);
+}
+
+void Controller::start_following(const ControllerInput& input) {
+  PerAxis<double> measured_rad;
+  for (int axis = 0; axis < kNumAxes; ++axis) measured_rad[axis] = input.axes[axis].position_rad;
+  verdict_ = gate_.start_at(measured_rad);
+  if (!verdict_.passed()) {
+    take(E::kArmingRefused);
+    return;
+  }
+  int num_held = 0;
+  for (const Leg leg : kLegs) {
+    const LimbCycle& limb = limbs_[leg];
+    const bool held_before = limb.state() == LimbState::kLoaded && limb.rung_id() >= 0;
+    const bool holds =
+        held_before && limb.confirmation().witness().touch && !limb.confirmation().is_lost();
+    limbs_[leg].reset(limb_input(input, leg), holds);
+    num_held += holds ? 1 : 0;
+  }
+  watch_.arm(input);
+  hangs_ = num_held >= 3;  // on the ladder again, not in the dock
+  following_ = began_now_ = true;
+}
+
+void Controller::work_climbing(const ControllerInput& input) {
+  if (const std::optional<Leg> leg = moving_leg()) {
+    watch_target(*leg, input);
+    return search(*leg, input);
+  }
+  if (shift_.active()) return;
+  const RobotNow now = robot_now(input);
+  bool ends = stepping_ && !end_step();
+  ends = ends || ends_here(now);
+  if (!ends) {
+    const bool may_shift = num_shifts_ < params_.max_shifts;
+    plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
+    ends = !plan_.ready;
+  }
+  if (!ends && plan_.shift_m.norm() > 0.0) {
+    PerLeg<LegAngles> from_rad;
+    for (const Leg leg : kLegs) from_rad[leg] = limbs_[leg].target().angles_rad;
+    ++num_shifts_;
+    ends = !shift_.begin(from_rad, plan_.shift_m);
+  } else if (!ends && is_stance_firm() && limbs_[plan_.leg].begin(plan_.goal)) {
+    stepping_ = true;
+    withdrawn_ = false;
+  }
+  if (!ends) return;
+  rests_safely_ = planner_.rests_safely(now);
+  take(E::kHold);
+}
+
+bool Controller::end_step() {
+  stepping_ = false;
+  const bool made = !limbs_[plan_.leg].returned();
+  if (made) {
+    num_shifts_ = 0;
+    if (ending_ == Ending::kAtRest && ++num_steps_to_rest_ >= kNumLegs) ending_ = Ending::kNow;
+    planner_.made(plan_.leg, upwards_);
+  } else {  // no grasp up there: it is back on its old rung
+    plan_.ready = false;
+    plan_.refusal = withdrawn_ ? Refusal::kNotTrusted : Refusal::kAvoided;
+  }
+  return made;
+}
+
+bool Controller::ends_here(const RobotNow& now) const {
+  if (ending_ == Ending::kNone) return false;
+  return ending_ == Ending::kNow || planner_.rests_safely(now);
+}
+
+void Controller::search(Leg leg, const ControllerInput& input) {
+  LimbCycle& limb = limbs_[leg];
+  if (!limb.wants_goal()) return;
+  const RobotNow now = robot_now(input);
+  const Eigen::Isometry3d T_odom_body = now.pose.T_odom_body();
+  Retry retry;
+  retry.leg = leg;
+  retry.upwards = state_ == S::kArming || upwards_;
+  retry.tried_rung_id = limb.goal().rung_id;
+  retry.tried_m = T_odom_body * limb.goal().grasp_m;
+  retry.from_m =
+      limb.home() ? T_odom_body * limb.home()->grasp_m : planner_.docked_from_m(leg, now);
+  const bool is_first_place = limb.num_places() == 1;
+  for (const bool other_rung : {false, true}) {
+    retry.other_rung = other_rung;
+    if (!other_rung && !is_first_place) continue;
+    const PlannedStep elsewhere = planner_.again(retry, now, ladder_of(input));
+    if (elsewhere.ready) return limb.retarget(elsewhere.goal);
+  }
+  limb.give_up();
+}
+
+bool Controller::is_stance_firm() const {
+  // Invariants 1 and 3: a grasp is opened only while the three others are confirmed.
+  for (const Leg leg : kLegs) {
+    if (!is_confirmed(limbs_[leg].state()) || !limbs_[leg].confirmation().holds()) return false;
+  }
+  return true;
+}
+
+void Controller::watch_target(Leg leg, const ControllerInput& input) {
+  LimbCycle& limb = limbs_[leg];
+  const LimbState at = limb.state();
+  const bool is_before_commit = at == LimbState::kUnloading || at == LimbState::kReleasing ||
+                                at == LimbState::kRetracting || at == LimbState::kTransit ||
+                                at == LimbState::kPregrasp;
+  const bool is_blind = (faults_ & flag(Fault::kPerceptionSilent)) != 0;
+  if (!is_before_commit || limb.returned() || is_blind) return;
+  const Eigen::Vector3d goal_m = odometry_.estimate().T_odom_body() * limb.goal().grasp_m;
+  if (planner_.offers(limb.goal().rung_id, goal_m, input.ladder)) return;
+  withdrawn_ = limb.abort();
+}
+
+bool Controller::must_stop(Leg leg) const {
+  if (began_now_) return true;  // invariant 6: the first targets are the measured positions
+  if (state_ == S::kClimbing || state_ == S::kArming) {
+    // The others do not go on when one of three is lost.
+    return action_.reaction >= Reaction::kFaultHold;
+  }
+  // Blind, but with a rung between its fingers: that is finished.
+  const LimbState at = limbs_[leg].state();
+  const bool is_at_rung =
+      at == LimbState::kClosing || at == LimbState::kVerify || at == LimbState::kLoading;
+  return !(state_ == S::kProtectiveHold && is_at_rung);
+}
+
+void Controller::move(const ControllerInput& input) {
+  const bool stop_body = state_ != S::kClimbing;
+  if (following_ && shift_.active()) {
+    shift_.step(params_.gate.period_s, stop_body);
+    for (const Leg leg : kLegs) limbs_[leg].follow(shift_.of(leg), shift_.rate());
+  }
+  for (const Leg leg : kLegs) {
+    if (action_.close_claws && following_) limbs_[leg].close_jaw();
+    LimbInput limb = limb_input(input, leg);
+    limb.stop = !following_ || must_stop(leg);
+    limbs_[leg].step(limb);
+  }
+}
+
+}  // namespace climb
