@@ -10,8 +10,6 @@
 
 #include <Eigen/Geometry>
 
-#include <Eigen/Geometry>
-
 #include "climb/foot_line.h"
 #include "climb/grasp_confirmation.h"
 #include "climb/limb_state.h"
