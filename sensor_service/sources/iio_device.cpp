@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <string_view>
-#include <system_error>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,8 +13,6 @@
 
 namespace sources {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 7> kChannelNames{
     "in_accel_x",   "in_accel_y",   "in_accel_z",  "in_anglvel_x",
@@ -29,17 +25,14 @@ std::string channel_name(std::size_t channel) {
   return std::string(kChannelNames[channel]);
 }
 
-/// Folder in sysfs whose attribute `name` says so: devices "iio:device*" or "trigger*".
+/// Folder in sysfs whose attribute `name` says so: devices "iio:device*" or "trigger*"; "" = none.
 std::string folder_named(const std::string& root, std::string_view prefix,
                          std::string_view wanted) {
-  std::vector<std::string> found;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(root, error)) {
-    const std::string file = entry.path().filename();
-    if (file.starts_with(prefix) && read_attribute(entry.path() / "name") == wanted)
-      found.push_back(entry.path());
+  for (const std::string& name : names_in(root)) {
+    const std::string folder = root + "/" + name;
+    if (name.starts_with(prefix) && read_attribute(folder + "/name") == wanted) return folder;
   }
-  return found.empty() ? "" : *std::min_element(found.begin(), found.end());
+  return "";
 }
 
 }  // namespace
@@ -73,21 +66,20 @@ std::string IioDevice::find() {
   folder_ = is_name
                 ? folder_named(params_.sysfs, "iio:device", params_.device.substr(kByName.size()))
                 : params_.sysfs + "/" + params_.device;
-  std::error_code error;
-  if (folder_.empty() || !fs::is_directory(folder_, error)) return "is not among " + params_.sysfs;
-  special_ = params_.dev + "/" + std::string(fs::path(folder_).filename());
+  if (folder_.empty() || names_in(folder_).empty()) return "is not among " + params_.sysfs;
+  special_ = params_.dev + folder_.substr(folder_.rfind('/'));
   return "";
 }
 
 /// Only what is needed enters the records; the buffer must be off meanwhile.
 std::string IioDevice::choose_channels() {
   write_attribute(folder_ + "/buffer/enable", "0");
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder_ + "/scan_elements", error)) {
-    const std::string file = entry.path().filename();
-    if (file.ends_with("_en")) write_attribute(entry.path(), "0");
+  const std::string elements = folder_ + "/scan_elements";
+  const std::vector<std::string> names = names_in(elements);
+  if (names.empty()) return "has no scan_elements: it cannot be read through a buffer";
+  for (const std::string& name : names) {
+    if (name.ends_with("_en")) write_attribute(elements + "/" + name, "0");
   }
-  if (error) return "has no scan_elements: it cannot be read through a buffer";
   for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
     const std::string problem = read_channel(channel);
     if (!problem.empty()) return problem;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sources/sysfs.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -37,6 +39,19 @@ bool write_attribute(const std::string& path, std::string_view value) {
   const ssize_t written = write(fd, value.data(), value.size());
   close(fd);
   return written == static_cast<ssize_t>(value.size());
+}
+
+std::vector<std::string> names_in(const std::string& folder) {
+  std::vector<std::string> names;
+  DIR* stream = opendir(folder.c_str());
+  if (stream == nullptr) return names;
+  while (const dirent* entry = readdir(stream)) {
+    const std::string name = entry->d_name;
+    if (name != "." && name != "..") names.push_back(name);
+  }
+  closedir(stream);
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 }  // namespace sources

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace sources {
 
@@ -17,5 +18,8 @@ std::optional<double> read_number(const std::string& path);
 
 /// False when the file is not there or the device refuses the value.
 bool write_attribute(const std::string& path, std::string_view value);
+
+/// Names of what is in a folder, in ascending order; none when it cannot be read.
+std::vector<std::string> names_in(const std::string& folder);
 
 }  // namespace sources

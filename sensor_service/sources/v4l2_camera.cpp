@@ -84,6 +84,7 @@ std::string V4l2Camera::agree_on_format() {
   format.fmt.pix.pixelformat = fourcc;
   format.fmt.pix.field = V4L2_FIELD_NONE;
   const int result = calls_.control(fd_, VIDIOC_S_FMT, &format);
+  if (result == -EBUSY) return reason("is used by somebody else", result);
   const v4l2_pix_format& agreed = format.fmt.pix;  // what the driver made of the wish
   const std::string wish = fourcc_text(fourcc) + " " + std::to_string(params_.width_px) + "x" +
                            std::to_string(params_.height_px);

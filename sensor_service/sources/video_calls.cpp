@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sources/video_calls.h"
 
-#include <algorithm>
 #include <cerrno>
-#include <filesystem>
-#include <system_error>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -12,16 +9,15 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include "sources/sysfs.h"
+
 namespace sources {
 
 std::vector<std::string> KernelVideoCalls::nodes() {
   std::vector<std::string> paths;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev", error)) {
-    const std::string name = entry.path().filename();
-    if (name.starts_with("video")) paths.push_back(entry.path());
+  for (const std::string& name : names_in("/dev")) {
+    if (name.starts_with("video")) paths.push_back("/dev/" + name);
   }
-  std::sort(paths.begin(), paths.end());
   return paths;
 }
 

@@ -188,7 +188,7 @@ TEST_F(V4l2, EveryFailureAtTheStart) {
   camera_.num_buffers = 4;
   for (const auto& [request, text] : std::map<unsigned long, std::string>{
            {VIDIOC_QUERYCAP, "is no video device"},
-           {VIDIOC_S_FMT, "does not deliver Z16 8x6"},
+           {VIDIOC_S_FMT, "is used by somebody else"},
            {VIDIOC_REQBUFS, "gives no buffers: Device or resource busy"},
            {VIDIOC_QUERYBUF, "cannot be mapped"},
            {VIDIOC_QBUF, "cannot be mapped"},
