@@ -24,7 +24,7 @@ enum class PlantStart : std::uint8_t {
 struct PlantParams {
   RobotGeometry geometry;
   ClawParams claw;
-  std::vector<Rung> rungs = straight_ladder({});
+  std::vector<LadderRung> rungs = straight_ladder({});
   std::array<DriveParams, kNumAxes> drives;
   double foot_stiffness_N_m = 24'000.0;  ///< of one leg with its servos (own: 800 Nm/rad at 0.18 m)
   double dock_stiffness_N_m = 20'000.0;  ///< at each of the four hips (own)

@@ -58,7 +58,7 @@ RobotPlant::RobotPlant(const PlantParams& params, MemoryBus& bus)
 void RobotPlant::place_legs() {
   const bool gripping = params_.start == PlantStart::kGripping;
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    const Rung& rung = world_.rung(params_.start_rung[static_cast<std::size_t>(leg)]);
+    const LadderRung& rung = world_.rung(params_.start_rung[static_cast<std::size_t>(leg)]);
     Eigen::Vector3d foot_world = 0.5 * (rung.end0_m + rung.end1_m);
     foot_world.y() = left_sign(leg) * params_.foot_y_m;
     if (!gripping) foot_world.x() -= params_.docked_gap_m;

@@ -40,8 +40,8 @@ PlantTruth RobotPlant::truth() const {
     truth.power[index] = drive(axis).power_state();
   }
   const auto rungs = world_.rungs();
-  truth.num_broken_rungs = static_cast<int>(
-      std::count_if(rungs.begin(), rungs.end(), [](const Rung& rung) { return rung.broken; }));
+  truth.num_broken_rungs = static_cast<int>(std::count_if(
+      rungs.begin(), rungs.end(), [](const LadderRung& rung) { return rung.broken; }));
   return truth;
 }
 

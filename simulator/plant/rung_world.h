@@ -13,7 +13,7 @@
 
 namespace simulator {
 
-struct Rung {
+struct LadderRung {
   Eigen::Vector3d end0_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d end1_m = Eigen::Vector3d::Zero();
   double radius_m = 0.014;
@@ -30,7 +30,7 @@ struct LadderParams {
   double rung_radius_m = 0.014;
 };
 
-std::vector<Rung> straight_ladder(const LadderParams& params);
+std::vector<LadderRung> straight_ladder(const LadderParams& params);
 
 struct NearestRung {
   int index = -1;
@@ -40,7 +40,7 @@ struct NearestRung {
 
 class RungWorld {
  public:
-  explicit RungWorld(std::vector<Rung> rungs) : rungs_(std::move(rungs)) {}
+  explicit RungWorld(std::vector<LadderRung> rungs) : rungs_(std::move(rungs)) {}
 
   /// The nearest unbroken rung; index -1 when there is none.
   NearestRung nearest(const Eigen::Vector3d& p_world_m) const;
@@ -48,13 +48,13 @@ class RungWorld {
   /// Breaks what is due. `load_N` and `touched` are per rung.
   void update(std::int64_t now_us, std::span<const double> load_N, std::span<const char> touched);
 
-  std::span<const Rung> rungs() const { return rungs_; }
-  Rung& rung(int index) { return rungs_[static_cast<std::size_t>(index)]; }
-  const Rung& rung(int index) const { return rungs_[static_cast<std::size_t>(index)]; }
+  std::span<const LadderRung> rungs() const { return rungs_; }
+  LadderRung& rung(int index) { return rungs_[static_cast<std::size_t>(index)]; }
+  const LadderRung& rung(int index) const { return rungs_[static_cast<std::size_t>(index)]; }
   int num_rungs() const { return static_cast<int>(rungs_.size()); }
 
  private:
-  std::vector<Rung> rungs_;
+  std::vector<LadderRung> rungs_;
 };
 
 }  // namespace simulator

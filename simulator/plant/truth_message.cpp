@@ -17,7 +17,7 @@ ladder_msgs::truth_t truth_message(const PlantTruth& truth, const RungWorld& wor
   message.q_odom_body[2] = rotation.y();
   message.q_odom_body[3] = rotation.z();
   for (int index = 0; index < world.num_rungs(); ++index) {
-    const Rung& rung = world.rung(index);
+    const LadderRung& rung = world.rung(index);
     if (rung.broken) continue;
     const Eigen::Vector3f end0 = (rung.end0_m - odom_origin_m).cast<float>();
     const Eigen::Vector3f end1 = (rung.end1_m - odom_origin_m).cast<float>();
