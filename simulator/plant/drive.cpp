@@ -172,10 +172,19 @@ void Drive::move_motor(std::int64_t now_us) {
             : std::clamp(static_cast<double>(since_us) / static_cast<double>(demand_period_us_),
                          0.0, 1.0);
     demand_ = demand_from_ + (demand_to_ - demand_from_) * share;
-    const double feed_forward_rad_s =
+    MotorTarget target;
+    target.position_rad = angle_rad(demand_);
+    const bool interpolates = demand_period_us_ > 0 && since_us < demand_period_us_;
+    if (interpolates) {
+      target.velocity_rad_s = params_.sign * (demand_to_ - demand_from_) / params_.counts_per_rad *
+                              1e6 / static_cast<double>(demand_period_us_);
+    }
+    target.feed_forward_rad_s =
         params_.sign * static_cast<double>(dictionary_.number(0x60B1)) / params_.counts_per_rad;
+    target.torque_Nm = params_.sign * static_cast<double>(dictionary_.number(0x60B2)) * 1e-3 *
+                       params_.rated_torque_Nm;
     // A servo is a spring about its demand: under load the joint bends away from it and stays so.
-    motor_.follow(angle_rad(demand_), feed_forward_rad_s, limits, kStep_s);
+    motor_.follow(target, limits, kStep_s);
   } else if (has_torque(power_)) {
     const double deceleration =
         static_cast<double>(dictionary_.number(0x6085)) / params_.counts_per_rad;
@@ -186,7 +195,7 @@ void Drive::move_motor(std::int64_t now_us) {
 }
 
 void Drive::finish_ramps() {
-  const bool stands = motor_.velocity_rad_s() == 0.0;
+  const bool stands = motor_.stands();
   if (power_ == PowerState::kFaultReactionActive && stands) enter(PowerState::kFault);
   const bool leaves = dictionary_.number(0x605A) < 5;
   if (power_ == PowerState::kQuickStopActive && stands && leaves) {

@@ -14,19 +14,47 @@ void Motor::set_position(double position_rad) {
   velocity_rad_s_ = 0.0;
 }
 
-void Motor::follow(double target_rad, double feed_forward_rad_s, const MotorLimits& limits,
-                   double dt_s) {
-  const double error = target_rad - position_rad_;
+void Motor::follow(const MotorTarget& target, const MotorLimits& limits, double dt_s) {
+  if (outside_) return command_follow(target, limits);
+  const double error = target.position_rad - position_rad_;
   // Never faster than can be braked before the target, else the limited acceleration overshoots.
   const double brakable = std::sqrt(2.0 * params_.max_acceleration_rad_s2 * std::fabs(error));
   const double wanted = std::min(std::fabs(error) / params_.lag_s, brakable);
-  step((error < 0.0 ? -wanted : wanted) + feed_forward_rad_s, limits, dt_s);
+  step((error < 0.0 ? -wanted : wanted) + target.feed_forward_rad_s, limits, dt_s);
 }
 
 void Motor::ramp_down(double deceleration_rad_s2, const MotorLimits& limits, double dt_s) {
+  if (outside_) return command_ramp(deceleration_rad_s2, limits, dt_s);
   const double slower =
       std::max(0.0, std::fabs(velocity_rad_s_) - std::max(deceleration_rad_s2, 0.1) * dt_s);
   step(velocity_rad_s_ < 0.0 ? -slower : slower, limits, dt_s);
+}
+
+void Motor::command_follow(const MotorTarget& target, const MotorLimits& limits) {
+  command_.kind = stuck ? MotorCommand::Kind::kBrake : MotorCommand::Kind::kFollow;
+  command_.target_rad = reversed ? 2.0 * position_rad_ - target.position_rad : target.position_rad;
+  command_.velocity_rad_s = reversed ? -target.velocity_rad_s : target.velocity_rad_s;
+  command_.torque_Nm = target.torque_Nm;
+  command_.torque_limit_Nm = std::min(params_.peak_torque_Nm, limits.torque_Nm);
+}
+
+void Motor::command_ramp(double deceleration_rad_s2, const MotorLimits& limits, double dt_s) {
+  // The demand slows down from its own speed, so that the joint feels no step.
+  if (command_.kind != MotorCommand::Kind::kFollow) command_.target_rad = position_rad_;
+  const double slower =
+      std::max(0.0, std::fabs(command_.velocity_rad_s) - std::max(deceleration_rad_s2, 0.1) * dt_s);
+  command_.kind = MotorCommand::Kind::kFollow;
+  command_.velocity_rad_s = command_.velocity_rad_s < 0.0 ? -slower : slower;
+  command_.target_rad += command_.velocity_rad_s * dt_s;
+  command_.torque_limit_Nm = std::min(params_.peak_torque_Nm, limits.torque_Nm);
+}
+
+void Motor::observe(const MotorState& state) {
+  position_rad_ = state.position_rad;
+  velocity_rad_s_ = state.velocity_rad_s;
+  torque_Nm_ = state.torque_Nm;
+  saturated_ = command_.kind == MotorCommand::Kind::kFollow &&
+               std::fabs(state.torque_Nm) >= command_.torque_limit_Nm;
 }
 
 void Motor::step(double wanted_rad_s, const MotorLimits& limits, double dt_s) {
@@ -49,6 +77,9 @@ void Motor::step(double wanted_rad_s, const MotorLimits& limits, double dt_s) {
 }
 
 void Motor::release(bool brake, double dt_s) {
+  command_ = {brake ? MotorCommand::Kind::kBrake : MotorCommand::Kind::kOff, position_rad_, 0.0,
+              0.0, 0.0};
+  if (outside_) return;
   torque_Nm_ = 0.0;
   saturated_ = false;
   if (brake) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/plant/plant_params.h"
 
+#include "base/check.h"
+
 namespace simulator {
 namespace {
 
@@ -43,6 +45,33 @@ DriveParams jaw_drive(int axis, const ClawParams& claw) {
 PlantParams::PlantParams() {
   for (int axis = 0; axis < kNumAxes; ++axis) {
     drives[static_cast<std::size_t>(axis)] = is_jaw(axis) ? jaw_drive(axis, claw) : leg_drive(axis);
+  }
+}
+
+Eigen::Isometry3d starting_pose(const PlantParams& params) {
+  // Body x up the ladder, z away from it.
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+  pose.translation() = Eigen::Vector3d(-params.stand_off_m, 0.0, params.body_height_m);
+  return pose;
+}
+
+void place_legs(PlantParams& params) {
+  const Eigen::Isometry3d T_world_body = starting_pose(params);
+  const bool gripping = params.start == PlantStart::kGripping;
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const LadderRung& rung =
+        params.rungs[static_cast<std::size_t>(params.start_rung[static_cast<std::size_t>(leg)])];
+    Eigen::Vector3d foot_world = 0.5 * (rung.end0_m + rung.end1_m);
+    foot_world.y() = left_sign(leg) * params.foot_y_m;
+    if (!gripping) foot_world.x() -= params.docked_gap_m;
+    const auto angles = angles_for_foot(params.geometry, leg, T_world_body.inverse() * foot_world);
+    CHECK(angles.has_value(), "the starting rungs must be within reach of the legs");
+    for (int joint = 0; joint < 3; ++joint) {
+      params.drives[static_cast<std::size_t>(axis_of(leg, joint))].start_rad = (*angles)[joint];
+    }
+    params.drives[static_cast<std::size_t>(axis_of(leg, 3))].start_rad =
+        gripping ? Claw(params.claw).contact_rad(rung.radius_m) : params.claw.open_rad;
   }
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "simulator/plant/claw.h"
 #include "simulator/plant/drive.h"
 #include "simulator/plant/plant_kinematics.h"
@@ -45,5 +47,12 @@ struct PlantParams {
 
 /// "" or the violated relation.
 std::string check(const PlantParams& params);
+
+/// The body at the start, in the dock or hanging.
+Eigen::Isometry3d starting_pose(const PlantParams& params);
+
+/// Sets the drives' starting angles: feet at their rungs, or before them in the dock. The rungs
+/// must be within reach (CHECK). params pass check().
+void place_legs(PlantParams& params);
 
 }  // namespace simulator

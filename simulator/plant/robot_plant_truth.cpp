@@ -7,7 +7,6 @@
 namespace simulator {
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81;
 constexpr double kAccelerometerSigma_m_s2 = 0.02;
 constexpr double kGyroscopeSigma_rad_s = 0.002;
 
@@ -16,22 +15,12 @@ constexpr double kGyroscopeSigma_rad_s = 0.002;
 PlantTruth RobotPlant::truth() const {
   PlantTruth truth;
   truth.time_us = now_us_;
-  truth.T_world_body = T_world_body_;
-  truth.docked = docked_;
-  truth.fallen = fallen_;
+  truth.T_world_body = T_world_body();
+  truth.docked = mechanics_->docked();
+  truth.fallen = mechanics_->fallen();
   truth.lines = lines();
   for (int leg = 0; leg < kNumLegs; ++leg) {
-    const Claw& claw = claws_[static_cast<std::size_t>(leg)];
-    LegTruth& told = truth.legs[static_cast<std::size_t>(leg)];
-    told.holds = claw.holds();
-    told.bears = bears(leg);
-    told.touch = claw.touch();
-    told.rung_index = claw.holds() ? claw.rung_index() : -1;
-    told.p_world_foot_m =
-        T_world_body_ * foot_in_body(params_.geometry, leg, leg_angles(leg, true));
-    told.force_on_rung_N = force_on_rung_N_[static_cast<std::size_t>(leg)];
-    told.last_loss = claw.last_loss();
-    told.lost_us = claw.lost_us();
+    truth.legs[static_cast<std::size_t>(leg)] = mechanics_->leg(leg);
   }
   for (int axis = 0; axis < kNumAxes; ++axis) {
     const auto index = static_cast<std::size_t>(axis);
@@ -46,25 +35,16 @@ PlantTruth RobotPlant::truth() const {
 }
 
 ImuReading RobotPlant::imu() {
+  const BodyMotion& body = mechanics_->body();
   ImuReading reading;
-  const bool falls = fallen_ && fall_m_s_ > 0.0;
-  if (!falls) {
-    reading.specific_force_m_s2 =
-        T_world_body_.linear().transpose() * Eigen::Vector3d(0.0, 0.0, kGravity_m_s2);
-  }
-  reading.angular_rate_rad_s = angular_rate_rad_s_;
+  reading.specific_force_m_s2 = body.specific_force_m_s2;
+  reading.angular_rate_rad_s = body.angular_rate_rad_s;
   for (int i = 0; i < 3; ++i) {
     reading.specific_force_m_s2[i] += kAccelerometerSigma_m_s2 * noise_.gaussian();
     reading.angular_rate_rad_s[i] += kGyroscopeSigma_rad_s * noise_.gaussian();
   }
-  reading.q_world_body = Eigen::Quaterniond(T_world_body_.linear());
+  reading.q_world_body = Eigen::Quaterniond(body.T_world_body.linear());
   return reading;
-}
-
-void RobotPlant::set_docked(bool docked) {
-  if (docked && !docked_) T_world_dock_ = T_world_body_;
-  docked_ = docked;
-  weighed_legs_ = ~0U;
 }
 
 void RobotPlant::inject(int axis, std::uint16_t fault_code) {

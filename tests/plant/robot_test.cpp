@@ -31,7 +31,7 @@ TEST(RobotPlant, GraspsARung) {
   bench.enable();
   bench.move_foot(kFl, {0.0, 0.15, 0.9});
   bench.cycles(80);
-  EXPECT_FALSE(bench.plant.claw(kFl).holds());
+  EXPECT_FALSE(bench.plant.leg(kFl).holds);
   bench.move_jaw(kFl, -0.6);
   std::int64_t held_us = -1, touched_us = -1;
   for (int i = 0; i < 800; ++i) {
@@ -41,7 +41,7 @@ TEST(RobotPlant, GraspsARung) {
       bench.send(frame_of(0x77F, {0x05}));
     }
     bench.advance(1000);
-    if (held_us < 0 && bench.plant.claw(kFl).holds()) held_us = bench.now_us;
+    if (held_us < 0 && bench.plant.leg(kFl).holds) held_us = bench.now_us;
     if (touched_us < 0 && bench.plant.lines()[kTouchFl]) touched_us = bench.now_us;
   }
   ASSERT_GE(held_us, 0);
@@ -59,7 +59,7 @@ TEST(RobotPlant, MissesARung) {
   bench.cycles(80);
   bench.move_jaw(kFl, -0.6);
   bench.cycles(80);
-  EXPECT_FALSE(bench.plant.claw(kFl).holds());
+  EXPECT_FALSE(bench.plant.leg(kFl).holds);
   EXPECT_FALSE(bench.plant.lines()[kTouchFl]);
   EXPECT_NEAR(bench.plant.drive(axis_of(kFl, 3)).measured_rad(), -0.60, 0.01);
 }
@@ -69,7 +69,7 @@ TEST(RobotPlant, PullTestTellsGraspFromNone) {
   RobotBench bench;
   bench.enable();
   bench.grasp(kFl, 2);
-  ASSERT_TRUE(bench.plant.claw(kFl).holds());
+  ASSERT_TRUE(bench.plant.leg(kFl).holds);
   const Eigen::Vector3d held = bench.plant.truth().legs[0].p_world_foot_m;
   bench.move_foot(kFl, held + Eigen::Vector3d(-0.010, 0.0, 0.0));
   bench.cycles(30);
