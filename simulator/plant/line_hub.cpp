@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/plant/line_hub.h"
 
-#include <fstream>
+#include <string_view>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "simulator/plant/frame_gateway.h"
 
@@ -55,25 +58,30 @@ void LineHub::publish(const LineLevels& levels) {
 
 SimulatedChip::SimulatedChip(const std::string& folder, const std::array<int, kNumLines>& offsets) {
   for (std::size_t line = 0; line < offsets.size(); ++line) {
-    pull_paths_[line] = folder + "/sim_gpio" + std::to_string(offsets[line]) + "/pull";
-    if (!std::ofstream(pull_paths_[line], std::ios::in)) {
-      throw DoorError("cannot write " + pull_paths_[line] + "; is gpio-sim set up?");
-    }
+    const std::string path = folder + "/sim_gpio" + std::to_string(offsets[line]) + "/pull";
+    pulls_[line] = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (pulls_[line] < 0) throw DoorError("cannot write " + path + "; is gpio-sim set up?");
+  }
+}
+
+SimulatedChip::~SimulatedChip() {
+  for (const int pull : pulls_) {
+    if (pull >= 0) ::close(pull);
   }
 }
 
 bool SimulatedChip::write(std::size_t line, bool level) const {
-  std::ofstream file(pull_paths_[line]);
-  file << (level ? "pull-up" : "pull-down") << std::flush;
-  return static_cast<bool>(file);
+  const std::string_view text = level ? "pull-up" : "pull-down";
+  return ::pwrite(pulls_[line], text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
 }
 
 bool SimulatedChip::publish(const LineLevels& levels) {
   bool written = true;
   for (std::size_t line = 0; line < levels.size(); ++line) {
-    if (levels_ && (*levels_)[line] == levels[line]) continue;
-    written &= write(line, levels[line]);
+    const bool is_known = levels_ && (*levels_)[line] == levels[line];
+    if (!is_known || line == refreshed_) written &= write(line, levels[line]);
   }
+  refreshed_ = (refreshed_ + 1) % levels.size();
   levels_ = levels;
   return written;
 }

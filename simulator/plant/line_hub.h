@@ -54,13 +54,19 @@ class SimulatedChip {
   /// `offsets` of the five lines on the chip. Throws DoorError where a pull file cannot be written.
   SimulatedChip(const std::string& folder, const std::array<int, kNumLines>& offsets);
 
-  /// Writes what changed; false when a file could not be written.
+  ~SimulatedChip();
+  SimulatedChip(const SimulatedChip&) = delete;
+  SimulatedChip& operator=(const SimulatedChip&) = delete;
+
+  /// Writes what changed, and one line more each time: a reader that asks for a bias sets the pull,
+  /// which a real switch would not let happen. False when a file could not be written.
   bool publish(const LineLevels& levels);
 
  private:
   bool write(std::size_t line, bool level) const;
 
-  std::array<std::string, kNumLines> pull_paths_;
+  std::array<int, kNumLines> pulls_ = {-1, -1, -1, -1, -1};  ///< descriptors
+  std::size_t refreshed_ = 0;
   std::optional<LineLevels> levels_;
 };
 

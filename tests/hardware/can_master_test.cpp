@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/hardware/bus_log.h"
 #include "tests/hardware/can_interface.h"
 #include "tests/hardware/real_time_master.h"
-#include "tests/support/child_process.h"
 
 namespace {
 
@@ -20,7 +20,6 @@ using hardware::kernel_frame;
 using hardware::master_params;
 using hardware::RealTimeMaster;
 using support::ChildProcess;
-using namespace std::chrono_literals;
 
 constexpr std::int64_t k100Hz_us = 10'000;
 constexpr std::int64_t k50Hz_us = 20'000;
@@ -55,7 +54,7 @@ void report(const char* what, const RealTimeMaster& master) {
 // Sixteen axes at 100 Hz from power-up: every object written and read back, enabled, moved,
 // disabled, and no fault on the way.
 TEST(MasterOnKernel, SixteenAxesAt100Hz) {
-  ChildProcess candump("/usr/bin/candump", {"-L", "vcan0"});
+  hardware::BusLog log("vcan0");
   const Plant plant("vcan0");
   RealTimeMaster master("vcan0", master_params(16, k100Hz_us));
   master.run(1.0);
@@ -73,12 +72,7 @@ TEST(MasterOnKernel, SixteenAxesAt100Hz) {
   EXPECT_TRUE(master.bus().faults().empty()) << master.problems();
   EXPECT_EQ(master.bus().num_malformed(), 0U);
   report("16 axes at 100 Hz on vcan", master);
-  candump.signal(SIGTERM);
-  candump.wait(5s);
-  std::FILE* log = std::fopen(LADDER_BUS_LOG, "w");
-  ASSERT_NE(log, nullptr);
-  std::fputs(candump.output().c_str(), log);
-  std::fclose(log);
+  log.keep(LADDER_BUS_LOG);
 }
 
 // Four axes at 50 Hz over an emulated pair of controllers with a real driver, 1 Mbit/s.

@@ -8,3 +8,11 @@ if(TARGET ladder_plant_main)
                                      LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/power_up.candump")
   add_dependencies(hardware_can_master_test ladder_plant_main)
 endif()
+
+# The whole controller on kernel devices, in this process: tests and the drill's kernel rows run it.
+if(TARGET climb_box)
+  ladder_library(hardware_kernel_box SOURCES kernel_box.cpp LINK climb_box)
+  hardware_test(hardware_climb_test SOURCES climb_test.cpp LINK hardware_kernel_box test_support TIMEOUT 240)
+  target_compile_definitions(hardware_climb_test
+                             PRIVATE LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/climb.candump")
+endif()
