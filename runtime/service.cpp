@@ -80,18 +80,26 @@ class Reporter {
   std::int64_t next_config_us_ = 0;
 };
 
-void work_until_stopped(Service& service, Bus& bus, Health& health, Reporter& reporter,
-                        int stop_signals) {
+/// The service's exit code.
+int work_until_stopped(Service& service, Bus& bus, Health& health, Reporter& reporter,
+                       int stop_signals) {
   pollfd waiting[3] = {{bus.file_descriptor(), POLLIN, 0},
                        {stop_signals, POLLIN, 0},
                        {service.wake_up(), POLLIN, 0}};
-  while ((waiting[1].revents & POLLIN) == 0) {
+  bool asked = false;
+  while (true) {
     poll(waiting, 3, kMaxWaitMs);
+    signalfd_siginfo signal{};
+    if (read(stop_signals, &signal, sizeof signal) == sizeof signal) {
+      if (asked) return kExitAsked;
+      asked = true;
+    }
     bus.drain();
     service.step(clock_now());
     health.count_step();
-    sd_notify(0, "WATCHDOG=1");
+    if (service.is_healthy()) sd_notify(0, "WATCHDOG=1");
     reporter.report(clock_now());
+    if (const std::optional<int> code = service.end_now(asked)) return *code;
   }
 }
 
@@ -116,16 +124,17 @@ int run(const ServiceDescription& description, const Arguments& arguments, Journ
     journal.warning(problem);
     health.set_flag(ladder_msgs::health_t::FLAG_SMALL_SOCKET_BUFFER, true);
   }
+  service->start();
   journal.info("started, " + url);
   sd_notify(0, "READY=1");
   Reporter reporter(bus, health, description, config);
-  work_until_stopped(*service, bus, health, reporter, stop_signals);
+  const int code = work_until_stopped(*service, bus, health, reporter, stop_signals);
   sd_notify(0, "STOPPING=1");
   health.set_state(ladder_msgs::health_t::STATE_STOPPING);
   bus.publish(channels::kHealth, health.snapshot(clock_now().utime_us, bus));
-  journal.info("stopped as asked");
+  journal.info(code == kExitAsked ? "stopped as asked" : "stopped");
   close(stop_signals);
-  return kExitAsked;
+  return code;
 }
 
 }  // namespace
@@ -166,6 +175,9 @@ int run_service(int argc, char** argv, const ServiceDescription& description) {
     journal.error(std::string("configuration: ") + error.what());
     return kExitConfiguration;
   } catch (const BusError& error) {
+    journal.error(error.what());
+    return kExitDevice;
+  } catch (const DeviceError& error) {
     journal.error(error.what());
     return kExitDevice;
   } catch (const std::exception& error) {

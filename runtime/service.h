@@ -6,6 +6,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,21 @@ class Service {
   virtual void step(const base::Now& now) noexcept = 0;
   /// Readable when step() has work that does not come from the bus (a device); -1 = none.
   virtual int wake_up() const { return -1; }
+
+  /// Opens devices and starts threads; throws DeviceError. `--check` ends before.
+  virtual void start() {}
+  /// The supervisor's watchdog is fed only while this is true.
+  virtual bool is_healthy() const { return true; }
+  /// After each step: the exit code to end with now, or nothing to go on. `asked`: SIGTERM or
+  /// SIGINT came; a second one ends at once.
+  virtual std::optional<int> end_now(bool asked) noexcept {
+    return asked ? std::optional<int>(0) : std::nullopt;
+  }
+};
+
+/// A device cannot be used as asked: what, and how to mend it. Exit code 3.
+struct DeviceError : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 /// A command line option that stands for a key of the configuration, e.g. --source for
@@ -58,8 +75,8 @@ inline constexpr int kExitConfiguration =
 inline constexpr int kExitDevice = 3;  ///< LCM or a device is missing: a restart may help
 inline constexpr int kExitInternal = 70;
 
-/// Arguments -> configuration -> bus -> construction -> loop -> exit code. SIGTERM and SIGINT end
-/// it with 0.
+/// Arguments -> configuration -> bus -> construction -> start -> loop -> exit code. SIGTERM and
+/// SIGINT end it with 0, unless the service says otherwise.
 int run_service(int argc, char** argv, const ServiceDescription& description);
 
 /// Top-level tables that a configuration file may hold.

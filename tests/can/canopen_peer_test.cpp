@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "can/can_socket.h"
 #include "can/cia402_bus.h"
@@ -56,11 +57,19 @@ class CanopenPeer : public ::testing::Test {
     std::remove(path_.substr(0, path_.rfind('/')).c_str());
   }
 
-  void start(const Cia402Params& params, const std::vector<std::string>& missing = {}) {
+  /// The slave on its line, which is there afterwards.
+  void start_line(const std::vector<std::string>& missing) {
     std::vector<std::string> arguments = {kFolder + "/bridge.py", "unix:" + path_, "node",
                                           kFolder + "/slave.js", "1"};
     arguments.insert(arguments.end(), missing.begin(), missing.end());
     bridge_ = std::make_unique<support::ChildProcess>("/usr/bin/python3", arguments);
+    for (int i = 0; i < 100 && ::access(path_.c_str(), F_OK) != 0; ++i) {
+      std::this_thread::sleep_for(milliseconds(50));
+    }
+  }
+
+  void start(const Cia402Params& params, const std::vector<std::string>& missing = {}) {
+    start_line(missing);
     socket_ = std::make_unique<CanSocket>(CanSocketParams{"unix:" + path_});
     for (int i = 0; i < 100 && !socket_->open().empty(); ++i) {
       std::this_thread::sleep_for(milliseconds(50));
@@ -69,6 +78,8 @@ class CanopenPeer : public ::testing::Test {
     bus = std::make_unique<Cia402Bus>(params, *socket_, &recorder);
     run_ms(500);  // the slave's interpreter starts
   }
+
+  const std::string& path() const { return path_; }
 
   void run_ms(int duration_ms) {
     const std::int64_t end_us = now_us() + duration_ms * 1000;
@@ -213,6 +224,17 @@ TEST_F(CanopenPeer, WrongLengthIsAnEmergency) {
   ASSERT_FALSE(bus->faults().empty());
   EXPECT_EQ(bus->faults()[0].cause, FaultCause::kEmergency) << story();
   EXPECT_EQ(bus->faults()[0].detail, 0x8220U);
+}
+
+// The user's tool says the same of it, with its exit code: not for climbing, good for the ground.
+TEST_F(CanopenPeer, DriveCheckTool) {
+  start_line({"6007", "6072", "6077"});
+  std::this_thread::sleep_for(milliseconds(500));  // the slave's interpreter starts
+  support::ChildProcess tool(LADDER_DRIVE_CHECK, {"--can", "unix:" + path(), "--node", "1",
+                                                  "--counts-per-rad", "1000", "--move-rad", "0.2"});
+  EXPECT_EQ(tool.wait(std::chrono::seconds(60)), 3) << tool.output();
+  EXPECT_NE(tool.output().find("GROUND TESTS ONLY"), std::string::npos) << tool.output();
+  EXPECT_NE(tool.output().find("6007h:0 abort connection option code"), std::string::npos);
 }
 
 }  // namespace

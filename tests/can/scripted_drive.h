@@ -23,7 +23,8 @@ class ScriptedDrive {
   bool is_mute_on_sync = false;  ///< no TPDO1
   bool has_heartbeat = true;
   bool ignores_control_word = false;
-  int sdo_delay_ms = 0;  ///< one request after the other, each takes so long
+  bool is_stuck = false;  ///< enabled, but stands
+  int sdo_delay_ms = 0;   ///< one request after the other, each takes so long
   std::int32_t position = 1000;
   std::map<std::uint32_t, std::uint32_t> aborts;      ///< object -> abort code, read and write
   std::map<std::uint32_t, std::uint32_t> reads_back;  ///< object -> another value than written
@@ -196,7 +197,7 @@ class ScriptedDrive {
     if (frame.dlc == 8)
       max_torque_ = static_cast<std::uint16_t>(frame.data[6] | frame.data[7] << 8);
     if (!ignores_control_word) walk(last);
-    if ((status_ & 0x6F) == 0x27) position = target_;
+    if ((status_ & 0x6F) == 0x27 && !is_stuck) position = target_;
     return {};
   }
 

@@ -67,7 +67,7 @@ int dequeue(RecordedCamera& camera, v4l2_buffer& buffer) {
   if (camera.waiting.empty() || camera.queued.empty()) return -EAGAIN;
   const RecordedFrame& frame = camera.waiting.front();
   buffer.index = camera.queued.front();
-  camera.queued.pop_front();
+  camera.queued.erase(camera.queued.begin());
   std::vector<std::uint8_t>& bytes = camera.buffers[buffer.index];
   std::fill(bytes.begin(), bytes.end(), std::uint8_t{0xEE});
   for (std::size_t row = 0; row < camera.height; ++row) {
@@ -199,7 +199,7 @@ void RecordedCameras::close(int fd) {
 int RecordedCameras::control(int fd, unsigned long request, void* argument) {
   RecordedCamera* camera = find(fd);
   if (camera == nullptr) return -EBADF;
-  camera->calls.emplace_back(name_of(request));
+  if (camera->keeps_calls) camera->calls.emplace_back(name_of(request));
   if (!camera->is_plugged_in) return -ENODEV;
   const auto failure = camera->failures.find(request);
   if (failure != camera->failures.end()) return -failure->second;

@@ -42,6 +42,7 @@ struct RecordedCamera {
   std::map<unsigned long, int> failures;  ///< request -> errno
   bool is_plugged_in = true;
   bool is_broken = false;  ///< POLLERR
+  bool keeps_calls = true;
   std::deque<RecordedFrame> waiting;
 
   // State of the driver.
@@ -49,7 +50,7 @@ struct RecordedCamera {
   std::uint32_t width = 0, height = 0;
   bool is_streaming = false;
   std::vector<std::vector<std::uint8_t>> buffers;
-  std::deque<std::uint32_t> queued;
+  std::vector<std::uint32_t> queued;  ///< the oldest first
   std::vector<std::string> calls;
 };
 
