@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bus_rig.h"
-#include "tests/lcmtypes/allocated_bytes.h"
+#include "tests/support/allocation_counter.h"
 
 namespace can {
 namespace {
@@ -13,21 +13,21 @@ constexpr int kNumAxes = 16;
 
 /// Cycles with answers prepared beforehand, since the scripted drives allocate.
 std::size_t bytes_of_cycles(BusRig& rig, const std::vector<std::vector<CanFrame>>& answers) {
-  const std::size_t before = lcmtypes::allocated_bytes();
+  const std::size_t before = test_support::allocated_bytes();
   for (const std::vector<CanFrame>& frames : answers) {
     rig.time_us += 10'000;
     for (const CanFrame& frame : frames) rig.line.put(frame);
     rig.bus->exchange(rig.time_us, {rig.time_us, rig.targets}, rig.feedback);
   }
-  return lcmtypes::allocated_bytes() - before;
+  return test_support::allocated_bytes() - before;
 }
 
 // The counter works, or the test below would prove nothing.
 TEST(CanAllocation, IsCounted) {
   static std::vector<int> kept;  // static: a compiler may leave out an allocation nobody sees
-  const std::size_t before = lcmtypes::allocated_bytes();
+  const std::size_t before = test_support::allocated_bytes();
   kept.resize(10);
-  EXPECT_GT(lcmtypes::allocated_bytes(), before + kept.size());
+  EXPECT_GT(test_support::allocated_bytes(), before + kept.size());
 }
 
 // Zero bytes in a thousand cycles while enabled, and in cycles full of faults of every kind.

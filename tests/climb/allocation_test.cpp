@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Once constructed, nothing in the motion library allocates. Own program: it counts malloc itself,
-// as Eigen asks it directly and not through operator new (glibc; not under a sanitizer).
-#include <cstddef>
+// Once constructed, nothing in the motion library allocates.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,41 +9,28 @@
 #include "climb/odometry.h"
 #include "climb/path_clock.h"
 #include "tests/climb/robot_poses.h"
-
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LADDER_COUNTS_MALLOC 1
-#else
-#define LADDER_COUNTS_MALLOC 0
-#endif
-
-namespace {
-volatile long num_allocations = 0;
-}  // namespace
-
-#if LADDER_COUNTS_MALLOC
-extern "C" void* __libc_malloc(std::size_t size);  // NOLINT(bugprone-reserved-identifier)
-extern "C" void* malloc(std::size_t size) {
-  num_allocations = num_allocations + 1;
-  return __libc_malloc(size);
-}
-#endif
+#include "tests/support/allocation_counter.h"
 
 namespace climb {
 namespace {
 
+using test_support::num_allocations;
+
 // The counter works, or the test below would prove nothing.
 TEST(Allocation, IsCounted) {
-  if (!LADDER_COUNTS_MALLOC) GTEST_SKIP() << "malloc cannot be counted here";
-  const long before = num_allocations;
-  const Eigen::VectorXd numbers = Eigen::VectorXd::Zero(100);
-  EXPECT_EQ(numbers.sum(), 0.0);
-  EXPECT_GT(num_allocations, before);
+  static std::vector<int> kept;  // static: a compiler may leave out an allocation nobody sees
+  std::size_t before = num_allocations();
+  kept.resize(10);
+  EXPECT_GT(num_allocations(), before);
+  before = num_allocations();
+  static Eigen::VectorXd numbers;
+  numbers = Eigen::VectorXd::Zero(100);
+  EXPECT_EQ(num_allocations() > before, test_support::counts_malloc());
 }
 
 // Statics (also bounded), lines, segments, stops, odometry and choice of a grasp: all on the stack
 // or in what the constructors took.
 TEST(Allocation, NoneAfterConstruction) {
-  if (!LADDER_COUNTS_MALLOC) GTEST_SKIP() << "malloc cannot be counted here";
   ClimbParams params;
   params.support.min_margin = 9.0;  // the bounded search runs
   const LegKinematics kinematics(params.robot);
@@ -71,7 +56,7 @@ TEST(Allocation, NoneAfterConstruction) {
   input.angles_rad = stance.angles_rad;
   input.weight = {1.0, 1.0, 1.0, 0.5};
 
-  const long before = num_allocations;
+  const std::size_t before = num_allocations();
   const RungLoss loss = support.check_rung_loss(stance);
   const FootLine line(kinematics, kFrontLeft, Eigen::Vector3d(0.3, 0.15, -0.23),
                       Eigen::Vector3d(0.3, 0.15, -0.28), {});
@@ -83,7 +68,7 @@ TEST(Allocation, NoneAfterConstruction) {
     odometry.update(input);
   }
   const GraspDecision decision = choice.choose({rungs, stretches, 0.0, true}, query);
-  const long after = num_allocations;
+  const std::size_t after = num_allocations();
   EXPECT_EQ(after, before);
   EXPECT_EQ(decision.refusal, Refusal::kNone) << name(decision.refusal);
   EXPECT_GT(loss.num_remaining, 0);

@@ -1,48 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // After the first frame neither structure nor attention asks for memory.
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
 #include "ddgng/attention.h"
 #include "ddgng/structure.h"
 #include "tests/ddgng/structure_scene.h"
-
-namespace {
-
-long num_allocations = 0;
-
-void* counted(std::size_t bytes) {
-  ++num_allocations;
-  void* memory = std::malloc(bytes);
-  if (memory == nullptr) throw std::bad_alloc();
-  return memory;
-}
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t bytes) {
-  return counted(bytes);
-}
-[[gnu::noinline]] void* operator new[](std::size_t bytes) {
-  return counted(bytes);
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+#include "tests/support/allocation_counter.h"
 
 namespace ddgng {
 namespace {
+
+using test_support::num_allocations;
 
 /// Nodes, edges of one frame into a topology that keeps its memory.
 void take_graph(const Topology& graph, Topology& topology) {
@@ -75,7 +43,7 @@ TEST(StructureAllocation, NoneAfterTheFirstFrame) {
     take_graph(structure_scene::random_surface(rng, 20), topology);
     builder.build(scenes[0].cloud.view(), topology);
 
-    const long before = num_allocations;
+    const std::size_t before = num_allocations();
     for (int frame = 0; frame < 8; ++frame) {
       const CloudView cloud = scenes[frame % 4].cloud.view();
       take_graph(frame % 2 == 0 ? scenes[frame / 2].topology : graphs[frame / 2], topology);
@@ -83,7 +51,7 @@ TEST(StructureAllocation, NoneAfterTheFirstFrame) {
       attention.select(cloud);
       builder.build(cloud, topology);
     }
-    EXPECT_EQ(num_allocations, before);
+    EXPECT_EQ(num_allocations(), before);
     EXPECT_FALSE(topology.faces.empty());
   }
 }

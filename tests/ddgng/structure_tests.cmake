@@ -11,4 +11,4 @@ ladder_test(ddgng_structure_reference_test
   LINK ddgng LABELS property)
 ladder_test(ddgng_structure_allocation_test
   SOURCES structure_allocation_test.cpp structure_scene.cpp
-  LINK ddgng LABELS unit)
+  LINK ddgng allocation_counter LABELS unit)

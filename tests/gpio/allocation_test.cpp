@@ -10,17 +10,17 @@
 #include "gpio/lines.h"
 #include "gpio/unix_lines.h"
 #include "simulator/plant/line_hub.h"
-#include "tests/lcmtypes/allocated_bytes.h"
+#include "tests/support/allocation_counter.h"
 
 namespace gpio {
 namespace {
 
 // The counter works, or the test below would prove nothing.
 TEST(GpioAllocation, IsCounted) {
-  const std::size_t before = lcmtypes::allocated_bytes();
+  const std::size_t before = test_support::allocated_bytes();
   FakeChip chip;
   const Lines lines(LinesParams{}, chip);
-  EXPECT_GT(lcmtypes::allocated_bytes(), before);
+  EXPECT_GT(test_support::allocated_bytes(), before);
 }
 
 // Zero bytes in a thousand polls with every line changing, and in the poll that sees the loss.
@@ -35,9 +35,9 @@ TEST(GpioAllocation, NonePerPoll) {
   int num_changes = 0;
   LineStates last;
   const auto poll = [&](int i) {
-    const std::size_t before = lcmtypes::allocated_bytes();
+    const std::size_t before = test_support::allocated_bytes();
     lines.poll(std::int64_t{i} * 10'000);
-    bytes += lcmtypes::allocated_bytes() - before;
+    bytes += test_support::allocated_bytes() - before;
     num_changes += lines.states() != last;
     last = lines.states();
   };

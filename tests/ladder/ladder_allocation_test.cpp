@@ -1,39 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No heap allocation per frame once constructed and warmed up. A program of its own: it replaces
-// operator new.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+// No heap allocation per frame once constructed and warmed up.
 #include <gtest/gtest.h>
 
 #include "ladder/ladder.h"
+#include "tests/support/allocation_counter.h"
 #include "tests/support/ladder_scene.h"
-
-namespace {
-std::atomic<long> num_allocations{0};
-}
-
-// Not inlined: the compiler would see free() meet a pointer of operator new and warn.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++num_allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace {
 
 using ladder::LadderParams;
 using ladder::LadderTracker;
 using test_support::LadderScene;
+using test_support::num_allocations;
 
-long allocations_while_running(const LadderParams& params) {
+std::size_t allocations_while_running(const LadderParams& params) {
   LadderScene ladder_scene(2), stairs(2), shelf(2);
   ladder_scene.add_ladder({});
   ladder_scene.add_board({0.98, 0.05, 0.85}, {0.98, -0.05, 0.85}, 0.06);
@@ -48,7 +28,7 @@ long allocations_while_running(const LadderParams& params) {
   }
   LadderTracker tracker(params);
   tracker.update(clouds[0]);
-  const long before = num_allocations;
+  const std::size_t before = num_allocations();
   for (const auto& cloud : clouds) tracker.update(cloud);
   tracker.reset();
   for (int frame = 0; frame < 30; ++frame) {
@@ -56,12 +36,12 @@ long allocations_while_running(const LadderParams& params) {
     cloud.sequence = 100 + frame;
     tracker.update(cloud);
   }
-  return num_allocations - before;
+  return num_allocations() - before;
 }
 
 // The default mode allocates nothing per frame.
 TEST(Allocation, DefaultModeAllocatesNothing) {
-  EXPECT_EQ(allocations_while_running(LadderParams{}), 0);
+  EXPECT_EQ(allocations_while_running(LadderParams{}), 0U);
 }
 
 // Nor does the paper's.
@@ -70,7 +50,7 @@ TEST(Allocation, PaperModeAllocatesNothing) {
   params.paper.inlier_m = 0.02;
   params.paper.outlier_m = 0.04;
   params.paper.tries = 500;
-  EXPECT_EQ(allocations_while_running(params), 0);
+  EXPECT_EQ(allocations_while_running(params), 0U);
 }
 
 }  // namespace

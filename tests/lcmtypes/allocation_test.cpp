@@ -4,14 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "runtime/wire_guard.h"
-#include "tests/lcmtypes/allocated_bytes.h"
 #include "tests/lcmtypes/sample_messages.h"
 #include "tests/lcmtypes/wire_edit.h"
+#include "tests/support/allocation_counter.h"
 
 namespace lcmtypes {
 namespace {
 
 using runtime::Reject;
+using test_support::allocated_bytes;
 
 template <class Msg>
 std::size_t bytes_allocated_for(const std::vector<std::uint8_t>& message, Msg& out,

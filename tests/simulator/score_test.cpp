@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "simulator/score/report.h"
 #include "simulator/score/scorer.h"
+#include "tests/simulator/score_cases.h"
 
 namespace simulator {
 namespace {
@@ -16,83 +16,8 @@ using ladder_msgs::ladder_t;
 using ladder_msgs::topology_t;
 using ladder_msgs::truth_t;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-void add_rung(truth_t& truth, const Bar& bar, std::int8_t kind, int hits, float visible) {
-  truth.rung_id.push_back(truth.num_rungs++);
-  truth.rung_kind.push_back(static_cast<std::uint8_t>(kind));
-  truth.rung_x0_m.push_back(static_cast<float>(bar.end0_m.x()));
-  truth.rung_y0_m.push_back(static_cast<float>(bar.end0_m.y()));
-  truth.rung_z0_m.push_back(static_cast<float>(bar.end0_m.z()));
-  truth.rung_x1_m.push_back(static_cast<float>(bar.end1_m.x()));
-  truth.rung_y1_m.push_back(static_cast<float>(bar.end1_m.y()));
-  truth.rung_z1_m.push_back(static_cast<float>(bar.end1_m.z()));
-  truth.rung_radius_m.push_back(0.014F);
-  truth.rung_hits.push_back(hits);
-  truth.rung_visible.push_back(visible);
-}
-
-Bar rung_at(double height_m) {
-  return {{1.0, 0.2, height_m}, {1.0, -0.2, height_m}};
-}
-
-/// Rungs at 0.3, 0.6, 0.9 m, all in view, one metre ahead.
-truth_t truth(std::int64_t utime = 100) {
-  truth_t message{};
-  message.utime = utime;
-  message.scene = "plain 1";
-  message.is_ladder = 1;
-  message.q_odom_body[0] = 1.0;
-  for (const double z : {0.3, 0.6, 0.9}) {
-    add_rung(message, rung_at(z), truth_t::RUNG_SOUND, 500, 1.0F);
-  }
-  message.num_rails = 1;
-  message.rail_x0_m = {1.0F};
-  message.rail_y0_m = {0.205F};
-  message.rail_z0_m = {0.0F};
-  message.rail_x1_m = {1.0F};
-  message.rail_y1_m = {0.205F};
-  message.rail_z1_m = {2.0F};
-  message.rail_half_width_m = {0.005F};
-  return message;
-}
-
-ladder_t report(const std::vector<Bar>& bars, std::int64_t utime = 100) {
-  ladder_t message{};
-  message.utime = utime;
-  message.ladder_state = bars.empty() ? ladder_t::LADDER_NONE : ladder_t::LADDER_CONFIRMED;
-  for (const Bar& bar : bars) {
-    message.rung_state.push_back(ladder_t::RUNG_TRUSTED);
-    message.rung_x0_m.push_back(static_cast<float>(bar.end0_m.x()));
-    message.rung_y0_m.push_back(static_cast<float>(bar.end0_m.y()));
-    message.rung_z0_m.push_back(static_cast<float>(bar.end0_m.z()));
-    message.rung_x1_m.push_back(static_cast<float>(bar.end1_m.x()));
-    message.rung_y1_m.push_back(static_cast<float>(bar.end1_m.y()));
-    message.rung_z1_m.push_back(static_cast<float>(bar.end1_m.z()));
-    ++message.num_rungs;
-  }
-  return message;
-}
-
-Bar moved(Bar bar, const Eigen::Vector3d& by_m) {
-  bar.end0_m += by_m;
-  bar.end1_m += by_m;
-  return bar;
-}
-
-std::vector<Bar> perfect() {
-  return {rung_at(0.3), rung_at(0.6), rung_at(0.9)};
-}
-
-Score score_of(const truth_t& truth_message, const ladder_t& ladder) {
-  Scorer scorer;
-  scorer.add(truth_message);
-  scorer.add(ladder);
-  return scorer.result();
-}
 
 // Nothing at all gives an empty score.
 TEST(Scorer, Nothing) {
@@ -353,56 +278,6 @@ TEST(Scorer, BarsAboveTheFloor) {
   ASSERT_TRUE(scorer.result().bars_m);
   EXPECT_THAT(*scorer.result().bars_m,
               ElementsAre(::testing::DoubleNear(0.8, 1e-6), ::testing::DoubleNear(1.1, 1e-6)));
-}
-
-// Latency joins depth and rungs by utime; rungs without their depth frame are left out.
-TEST(Scorer, Latency) {
-  Scorer scorer;
-  for (std::int64_t i = 0; i < 1000; ++i) {
-    scorer.depth_frame_received(i, 1000 * i);
-    scorer.rungs_received(i, 1000 * i + (i == 999 ? 50'000 : 9'000));
-  }
-  scorer.rungs_received(-7, 0);
-  EXPECT_EQ(scorer.result().latency_ms_p50, 9.0);
-  EXPECT_EQ(scorer.result().latency_ms_p99, 9.0);
-  EXPECT_FALSE(Scorer().result().latency_ms_p99);
-}
-
-// Quantiles by nearest rank.
-TEST(Quantile, Table) {
-  EXPECT_FALSE(quantile({}, 0.5));
-  EXPECT_EQ(quantile({3.0}, 0.95), 3.0);
-  EXPECT_EQ(quantile({2.0, 1.0}, 0.5), 1.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.95), 3.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.0), 1.0);
-}
-
-// Without truth the JSON has no key that needs it; with truth it has, and unmeasured is null.
-TEST(Report, KeysFollowTheTruth) {
-  Scorer recording;
-  recording.add(report(perfect()));
-  EXPECT_THAT(to_json(recording.result()), Not(HasSubstr("recall")));
-  EXPECT_THAT(to_json(recording.result()), HasSubstr("\"ladders_confirmed\": 1"));
-  const std::string json = to_json(score_of(truth(), report({})));
-  EXPECT_THAT(json, HasSubstr("\"recall\": 0"));
-  EXPECT_THAT(json, HasSubstr("\"precision\": null"));
-  EXPECT_THAT(json, HasSubstr("\"latency_ms_p50\": null"));
-  EXPECT_THAT(json, HasSubstr("\"messages_lost\": 0"));
-}
-
-// A long list of bars does not swallow the lines behind it.
-TEST(Report, LongListsStayLines) {
-  Score score;
-  score.bars_m = std::vector<double>(100, 1.23456);
-  EXPECT_THAT(to_text(score), HasSubstr("1.23456] m\nlatency"));
-}
-
-// Text from a message cannot break the JSON.
-TEST(Report, QuotesAreEscaped) {
-  truth_t named = truth();
-  named.scene = "a\"b\\c\n";
-  EXPECT_THAT(to_json(score_of(named, report({}))), HasSubstr(R"("scene": "a\"b\\c ")"));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 #include "sources/a010_source.h"
 #include "sources/iio_imu.h"
 #include "sources/v4l2_source.h"
-#include "tests/lcmtypes/allocated_bytes.h"
+#include "tests/support/allocation_counter.h"
 
 namespace sources {
 namespace {
@@ -29,9 +29,9 @@ class Allocation : public ::testing::Test {
   /// Bytes that one step asks for.
   std::size_t bytes_of_step(FrameSource& source) {
     clock_.monotonic_us += 5'000;
-    const std::size_t before = lcmtypes::allocated_bytes();
+    const std::size_t before = test_support::allocated_bytes();
     source.poll(clock_.now(), sink_);
-    return lcmtypes::allocated_bytes() - before;
+    return test_support::allocated_bytes() - before;
   }
 
   ReadySet ready_;
@@ -42,9 +42,9 @@ class Allocation : public ::testing::Test {
 // The counter works, or the tests below would prove nothing.
 TEST(Counter, Counts) {
   static std::vector<int> kept;  // static: a compiler may leave out an allocation nobody sees
-  const std::size_t before = lcmtypes::allocated_bytes();
+  const std::size_t before = test_support::allocated_bytes();
   kept.resize(10);
-  EXPECT_GT(lcmtypes::allocated_bytes(), before + kept.size());
+  EXPECT_GT(test_support::allocated_bytes(), before + kept.size());
 }
 
 // Four cameras at once. The double gives memory back only (its queues were filled beforehand).

@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // After the first frames of each head nothing is taken from the heap any more.
-#include <cstdlib>
-#include <new>
-
 #include <gtest/gtest.h>
 
+#include "tests/support/allocation_counter.h"
 #include "tests/tof/frame_builder.h"
 #include "tof/fusion.h"
 
 namespace {
 
-std::size_t num_allocations = 0;
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++num_allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-
-namespace {
+using test_support::num_allocations;
 
 // Two rounds warm up; then a hundred, with more and fewer points, take nothing.
 TEST(FusionMemory, NoAllocationPerFrame) {
@@ -39,7 +21,7 @@ TEST(FusionMemory, NoAllocationPerFrame) {
   std::size_t before = 0;
   std::int64_t num_clouds = 0;
   for (int round = 0; round < 102; ++round) {
-    if (round == 2) before = num_allocations;
+    if (round == 2) before = num_allocations();
     for (int head = 0; head < tof::kNumHeads; ++head) {
       const auto utime_us = tof_test::kStart_us + tof_test::kPeriod_us * round + 16'000 * head;
       fusion.add_imu({utime_us, {0.0, 0.1, 9.8}, {0.0, 0.0, 0.0}});
@@ -49,7 +31,7 @@ TEST(FusionMemory, NoAllocationPerFrame) {
   }
   EXPECT_GT(num_clouds, 100);
   EXPECT_GT(before, 0U) << "the counter counts";
-  EXPECT_EQ(num_allocations, before);
+  EXPECT_EQ(num_allocations(), before);
 }
 
 }  // namespace
