@@ -38,7 +38,7 @@ bool PerceivedLadder::update(std::int64_t now_us, const simulator::RobotPlant& p
   return true;
 }
 
-void PerceivedLadder::tell(int index, const simulator::Rung& rung) {
+void PerceivedLadder::tell(int index, const simulator::LadderRung& rung) {
   const Eigen::Vector3d error_m =
       bias_m_[static_cast<std::size_t>(index)] + within(params_.jitter_m, rng_) - odom_origin_m_;
   climb::RungView told;

@@ -37,7 +37,7 @@ class PerceivedLadder {
   int lifted_from = 0;
 
  private:
-  void tell(int index, const simulator::Rung& rung);
+  void tell(int index, const simulator::LadderRung& rung);
 
   PerceptionParams params_;
   base::Rng rng_;

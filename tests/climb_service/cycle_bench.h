@@ -109,13 +109,13 @@ struct CycleBench {
     rungs_.clear();
     stretches_.clear();
     for (int index = 0; index < plant.world().num_rungs(); ++index) {
-      const simulator::Rung& rung = plant.world().rung(index);
+      const simulator::LadderRung& rung = plant.world().rung(index);
       if (!rung.broken) add(index, rung);
     }
     inbox.ladder = {rungs_, stretches_, 0.0, true};
     inbox.ladder_received_us = now_us;
   }
-  void add(int index, const simulator::Rung& rung) {
+  void add(int index, const simulator::LadderRung& rung) {
     climb::RungView view;
     view.id = index + 1;
     view.trusted = true;
