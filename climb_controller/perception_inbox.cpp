@@ -33,8 +33,7 @@ void to_snapshot(const ladder_t& m, RungsSnapshot& snapshot) {
   snapshot.stretches.clear();
   for (std::int32_t i = 0; i < m.num_intervals; ++i) {
     if (m.interval_reason[i] != ladder_t::REASON_NONE) continue;
-    snapshot.stretches.push_back(
-        {m.interval_rung[i], m.interval_from_m[i], m.interval_to_m[i]});
+    snapshot.stretches.push_back({m.interval_rung[i], m.interval_from_m[i], m.interval_to_m[i]});
   }
 }
 
@@ -42,8 +41,7 @@ Reject RungsInbox::judge(const ladder_t& message, const base::Now& now) {
   if (const Reject verdict = runtime::check_values(message); verdict != Reject::kNone) {
     return verdict;
   }
-  const Reject order =
-      runtime::judge_order({message.utime, message.seq}, position_, counts_);
+  const Reject order = runtime::judge_order({message.utime, message.seq}, position_, counts_);
   if (order != Reject::kNone) return order;
   const std::int64_t age_us = now.utime_us - message.utime;
   const bool is_fresh = age_us <= params_.max_age_us && age_us >= -params_.max_ahead_us;

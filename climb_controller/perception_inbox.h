@@ -31,7 +31,7 @@ struct RungsSnapshot {
 void to_snapshot(const ladder_msgs::ladder_t& message, RungsSnapshot& snapshot);
 
 struct PerceptionParams {
-  std::int64_t max_age_us = 300'000;  ///< of a measurement at receipt, by the wall clock
+  std::int64_t max_age_us = 300'000;   ///< of a measurement at receipt, by the wall clock
   std::int64_t max_ahead_us = 50'000;  ///< a measurement may lie so far in the future
 };
 

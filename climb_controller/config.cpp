@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "climb_controller/config.h"
+
+#include <algorithm>
+
+namespace climb_controller {
+namespace {
+
+using runtime::ConfigTable;
+
+void read(ConfigTable table, climb::JointLimits& p) {
+  table.read("min_rad", p.min_rad);
+  table.read("max_rad", p.max_rad);
+  table.read("max_velocity_rad_s", p.max_velocity_rad_s);
+  table.read("max_acceleration_rad_s2", p.max_acceleration_rad_s2);
+  table.read("max_torque_Nm", p.max_torque_Nm);
+  table.read("peak_torque_Nm", p.peak_torque_Nm);
+}
+
+void read(ConfigTable table, climb::ClawParams& p) {
+  table.read("width_m", p.width_m);
+  table.read("open_rad", p.open_rad);
+  table.read("closed_rad", p.closed_rad);
+  table.read("on_rung_rad", p.on_rung_rad);
+  table.read("on_rung_window_rad", p.on_rung_window_rad);
+  table.read("capture_m", p.capture_m);
+  table.read("min_rung_radius_m", p.min_rung_radius_m);
+  table.read("max_rung_radius_m", p.max_rung_radius_m);
+  table.read("holding_torque_Nm", p.holding_torque_Nm);
+  table.read("min_closing_torque_Nm", p.min_closing_torque_Nm);
+  table.read("max_torque_Nm", p.max_torque_Nm);
+  table.read("max_velocity_rad_s", p.max_velocity_rad_s);
+}
+
+void read(ConfigTable table, climb::MassParams& p) {
+  table.read("torso_kg", p.torso_kg);
+  table.read("abduction_kg", p.abduction_kg);
+  table.read("thigh_kg", p.thigh_kg);
+  table.read("shank_kg", p.shank_kg);
+  table.read("claw_kg", p.claw_kg);
+}
+
+void read(ConfigTable table, climb::RobotParams& p) {
+  table.read("hip_x_m", p.hip_x_m);
+  table.read("hip_y_m", p.hip_y_m);
+  table.read("abduction_m", p.abduction_m);
+  table.read("thigh_m", p.thigh_m);
+  table.read("shank_m", p.shank_m);
+  table.read("wrist_rad", p.wrist_rad);
+  table.read("min_height_m", p.min_height_m);
+  table.read("knee_sign", p.knee_sign);
+  read(table.table("abduction"), p.abduction);
+  read(table.table("hip"), p.hip);
+  read(table.table("knee_bend"), p.knee_bend);
+  read(table.table("mass"), p.mass);
+  read(table.table("claw"), p.claw);
+}
+
+void read(ConfigTable table, climb::MotionParams& p) {
+  table.read("stand_off_m", p.stand_off_m);
+  table.read("lateral_home_m", p.lateral_home_m);
+  table.read("retract_m", p.retract_m);
+  table.read("retract_m_s", p.retract_m_s);
+  table.read("transit_m_s", p.transit_m_s);
+  table.read("pregrasp_m", p.pregrasp_m);
+  table.read("approach_m_s", p.approach_m_s);
+  table.read("cartesian_m_s2", p.cartesian_m_s2);
+  table.read("pull_test_m", p.pull_test_m);
+  table.read("pull_test_max_slip_m", p.pull_test_max_slip_m);
+  table.read("pull_test_min_N", p.pull_test_min_N);
+  table.read("pull_test_max_N", p.pull_test_max_N);
+  table.read("unload_s", p.unload_s);
+  table.read("open_s", p.open_s);
+  table.read("settle_s", p.settle_s);
+  table.read("close_s", p.close_s);
+  table.read("pull_s", p.pull_s);
+  table.read("load_s", p.load_s);
+  table.read("body_shift_s", p.body_shift_s);
+}
+
+void read(ConfigTable table, climb::SupportParams& p) {
+  table.read("gravity_m_s2", p.gravity_m_s2);
+  table.read("grip_alarm_N", p.grip_alarm_N);
+  table.read("friction", p.friction);
+  table.read("squeeze_N", p.squeeze_N);
+  table.read("min_margin", p.min_margin);
+  table.read("max_moment_residual_Nm", p.max_moment_residual_Nm);
+  table.read("max_force_residual_N", p.max_force_residual_N);
+  table.read("moment_arm_m", p.moment_arm_m);
+  table.read("max_iterations", p.max_iterations);
+}
+
+void read(ConfigTable table, climb::OdometryParams& p) {
+  table.read("foot_sigma_m", p.foot_sigma_m);
+  table.read("anchor_sigma_m", p.anchor_sigma_m);
+  table.read("slip_m", p.slip_m);
+  table.read("orientation_sigma_rad", p.orientation_sigma_rad);
+  table.read("free_drift_m_s", p.free_drift_m_s);
+}
+
+void read(ConfigTable table, climb::GraspChoiceParams& p) {
+  table.read("max_age_s", p.max_age_s);
+  table.read("min_confidence", p.min_confidence);
+  table.read("max_sigma_m", p.max_sigma_m);
+  table.read("claw_margin_m", p.claw_margin_m);
+  table.read("max_lateral_m", p.max_lateral_m);
+  table.read("min_step_m", p.min_step_m);
+  table.read("max_step_m", p.max_step_m);
+  table.read("min_joint_margin_rad", p.min_joint_margin_rad);
+  table.read("min_sigma_J_m", p.min_sigma_J_m);
+  table.read("claw_clearance_m", p.claw_clearance_m);
+  table.read("num_approach_points", p.num_approach_points);
+  table.read("lateral_cost", p.lateral_cost);
+  table.read("step_cost", p.step_cost);
+  table.read("sigma_cost", p.sigma_cost);
+  table.read("confidence_cost_m", p.confidence_cost_m);
+  table.read("margin_cost_m", p.margin_cost_m);
+}
+
+void read(ConfigTable table, climb::LimbParams& p) {
+  table.read("jaw_speed_rad_s", p.jaw_speed_rad_s);
+  table.read("close_timeout_s", p.close_timeout_s);
+  table.read("budget_s", p.budget_s);
+  table.read("max_tries", p.max_tries);
+  table.read("try_offset_m", p.try_offset_m);
+  table.read("empty_window_rad", p.empty_window_rad);
+}
+
+void read(ConfigTable table, climb::ConfirmationParams& p) {
+  table.read("touch_s", p.touch_s);
+  table.read("lost_s", p.lost_s);
+  table.read("stuck_s", p.stuck_s);
+  table.read("open_window_rad", p.open_window_rad);
+  table.read("max_disagreements", p.max_disagreements);
+}
+
+void read(ConfigTable table, climb::GateParams& p) {
+  table.read("max_age_us", p.max_age_us);
+  table.read("max_start_error_rad", p.max_start_error_rad);
+}
+
+void read(ConfigTable table, climb::WatchParams& p) {
+  table.read("max_following_rad", p.max_following_rad);
+  table.read("jump_margin_rad", p.jump_margin_rad);
+  table.read("min_upright_cosine", p.min_upright_cosine);
+  table.read("free_fall_m_s2", p.free_fall_m_s2);
+  table.read("free_fall_s", p.free_fall_s);
+  table.read("max_ladder_age_us", p.max_ladder_age_us);
+}
+
+void read(ConfigTable table, climb::AttitudeParams& p) {
+  table.read("time_constant_s", p.time_constant_s);
+  table.read("gravity_m_s2", p.gravity_m_s2);
+  table.read("trust_m_s2", p.trust_m_s2);
+  table.read("max_gap_s", p.max_gap_s);
+}
+
+void read(ConfigTable table, PerceptionParams& p) {
+  table.read("max_age_us", p.max_age_us);
+  table.read("max_ahead_us", p.max_ahead_us);
+}
+
+void read(ConfigTable table, DriveKind& p) {
+  table.read("counts_per_rad", p.counts_per_rad);
+  table.read("gear", p.gear);
+  table.read("rated_torque_Nm", p.rated_torque_Nm);
+  table.read("quick_stop_rad_s2", p.quick_stop_rad_s2);
+  table.read("following_error_rad", p.following_error_rad);
+  table.read("following_error_ms", p.following_error_ms);
+  table.read("has_torque", p.has_torque);
+}
+
+/// Whole numbers written as TOML numbers.
+void read(ConfigTable table, const char* key, climb::PerAxis<int>& values) {
+  climb::PerAxis<double> numbers;
+  std::copy(values.begin(), values.end(), numbers.begin());
+  table.read(key, numbers);
+  for (int axis = 0; axis < climb::kNumAxes; ++axis) {
+    values[axis] = static_cast<int>(numbers[axis]);
+    if (values[axis] != numbers[axis]) table.fail(key, "must hold whole numbers");
+  }
+}
+
+void read(ConfigTable table, DriveLayout& p) {
+  read(table, "node_id", p.node_id);
+  for (const int id : p.node_id) {
+    if (id < 1 || id > 126) table.fail("node_id", "must be 1..126");
+  }
+  read(table, "sign", p.sign);
+  table.read("offset_rad", p.offset_rad);
+  read(table.table("joint"), p.joint);
+  read(table.table("jaw"), p.jaw);
+}
+
+void read(ConfigTable table, gpio::LinesParams& p) {
+  table.read("chip", p.chip);
+  const char* const keys[] = {"touch_fl", "touch_fr", "touch_rl", "touch_rr"};
+  for (int i = 0; i < gpio::kNumTouch; ++i) table.read(keys[i], p.touch[i].name);
+  table.read("estop", p.estop.name);
+  table.require(check(p));
+}
+
+void read(ConfigTable table, climb::ControllerParams& p) {
+  table.read("period_s", p.climb.motion.period_s, {0.001, 0.1});
+  p.gate.period_s = p.watch.period_s = p.climb.motion.period_s;
+  table.read("selftest_s", p.selftest_s, {0.0, 60.0});
+  table.read("enable_timeout_s", p.enable_timeout_s, {0.1, 60.0});
+  table.read("dock_timeout_s", p.dock_timeout_s, {1.0, 3600.0});
+  read(table.table("robot"), p.climb.robot);
+  read(table.table("motion"), p.climb.motion);
+  read(table.table("support"), p.climb.support);
+  read(table.table("odometry"), p.climb.odometry);
+  read(table.table("grasp"), p.climb.grasp);
+  read(table.table("limb"), p.limb);
+  read(table.table("confirmation"), p.confirmation);
+  read(table.table("gate"), p.gate);
+  read(table.table("watch"), p.watch);
+}
+
+}  // namespace
+
+ServiceParams read_params(ConfigTable table) {
+  ServiceParams params;
+  table.read("power_off_hold", params.cycle.power_off_hold,
+             {{"none", PowerOffHold::kNone},
+              {"brake", PowerOffHold::kBrake},
+              {"self_locking", PowerOffHold::kSelfLocking}});
+  table.read("allow_no_hold_on_loss", params.cycle.allow_no_hold_on_loss);
+  table.read("flight_folder", params.flight_folder);
+  read(table, params.cycle.controller);
+  read(table.table("drives"), params.drives);
+  ConfigTable can = table.table("can");
+  can.read("interface", params.can_interface);
+  can.read("feed_forward", params.feed_forward);
+  params.cycle.controller.feed_forward = params.feed_forward;
+  read(table.table("lines"), params.lines);
+  read(table.table("attitude"), params.attitude);
+  read(table.table("perception"), params.perception);
+
+  table.table("attitude").require(check(params.attitude));
+  CycleParams cycle = params.cycle;
+  cycle.controller.session_id = 1;  // any: it is drawn at the start
+  table.require(check(cycle));
+  table.table("drives").require(check(bus_params(params)));
+  return params;
+}
+
+can::Cia402Params bus_params(const ServiceParams& params) {
+  can::Cia402Params bus = servo_bus_params(params.drives, params.cycle.controller.climb);
+  bus.feed_forward = params.feed_forward;
+  return bus;
+}
+
+}  // namespace climb_controller
