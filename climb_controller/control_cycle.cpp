@@ -140,6 +140,7 @@ CommandVerdict ControlCycle::judge(const climb::OperatorCommand& command) {
 void ControlCycle::answer(const climb::OperatorCommand& command, CommandVerdict verdict) {
   answered_ = command;
   verdict_ = verdict;
+  ++num_answers_;
 }
 
 Policy ControlCycle::policy_of_drives() const {
@@ -185,6 +186,7 @@ void ControlCycle::fill(CycleReport& report) const {
   report.order = answered_.order;
   report.order_seq = answered_.seq;
   report.verdict = verdict_;
+  report.num_answers = num_answers_;
   report.is_resetting = walk_.is_resetting();
 }
 

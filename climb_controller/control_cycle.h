@@ -92,6 +92,7 @@ struct CycleReport {
   climb::Order order = climb::Order::kNone;
   std::int64_t order_seq = -1;
   climb::CommandVerdict verdict = climb::CommandVerdict::kNone;
+  std::uint64_t num_answers = 0;
   bool is_resetting = false;  ///< a reset waits for the bus
 };
 
@@ -138,6 +139,7 @@ class ControlCycle {
   climb::OperatorCommand waiting_;   ///< a reset that waits for the bus; kNone: none
   climb::OperatorCommand answered_;  ///< the last one
   climb::CommandVerdict verdict_ = climb::CommandVerdict::kNone;
+  std::uint64_t num_answers_ = 0;
   Policy policy_ = Policy::kNone;  ///< why it was refused
 };
 

@@ -55,8 +55,8 @@ std::string take_priority(pthread_t thread) {
 
 ControlThread::ControlThread(const ServiceParams& params)
     : params_(params),
-      period_us_(static_cast<std::int64_t>(
-          params.cycle.controller.climb.motion.period_s * 1e6 + 0.5)),
+      period_us_(
+          static_cast<std::int64_t>(params.cycle.controller.climb.motion.period_s * 1e6 + 0.5)),
       socket_(can::CanSocketParams{.interface = params.can_interface}),
       bus_(bus_params(params), socket_, &recorder_),
       chip_(gpio::make_line_chip(params.lines)),

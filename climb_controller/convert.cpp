@@ -46,8 +46,7 @@ void fill_axes(const CycleReport& report, climb_state_t& m) {
     m.wanted_rad[axis] = report.output.send ? static_cast<float>(wanted_rad) : 0.0F;
     m.is_heard[axis] = is_heard ? 1 : 0;
     m.measured_rad[axis] = is_heard ? static_cast<float>(heard.position_rad) : 0.0F;
-    m.torque_Nm[axis] =
-        std::isfinite(heard.torque_Nm) ? static_cast<float>(heard.torque_Nm) : 0.0F;
+    m.torque_Nm[axis] = std::isfinite(heard.torque_Nm) ? static_cast<float>(heard.torque_Nm) : 0.0F;
     m.drive_state[axis] = static_cast<std::int8_t>(heard.state);
     m.error_code[axis] = heard.error_code;
   }
@@ -56,8 +55,8 @@ void fill_axes(const CycleReport& report, climb_state_t& m) {
 }  // namespace
 
 climb::OperatorCommand to_command(const command_t& message) {
-  return {static_cast<climb::Order>(message.order),
-          static_cast<std::uint64_t>(message.session_id), message.seq};
+  return {static_cast<climb::Order>(message.order), static_cast<std::uint64_t>(message.session_id),
+          message.seq};
 }
 
 void to_message(const CycleReport& report, climb_state_t& m) {

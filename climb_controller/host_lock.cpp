@@ -22,8 +22,7 @@ HostLock::HostLock(const std::string& bus_name) {
   const std::size_t room = sizeof address.sun_path - 1;
   const std::string kept = name.size() > room ? name.substr(name.size() - room) : name;
   std::copy(kept.begin(), kept.end(), address.sun_path + 1);
-  const auto size =
-      static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + kept.size());
+  const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + kept.size());
   fd_ = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const auto* const where = static_cast<const sockaddr*>(static_cast<const void*>(&address));
   if (fd_ >= 0 && ::bind(fd_, where, size) == 0) return;
