@@ -38,8 +38,8 @@ std::string hexadecimal(std::uint32_t number) {
 void Chronicle::tell(const CycleReport& report) {
   tell_bus(report);
   tell_lines(report.lines);
-  tell_state(report);
   tell_answer(report);
+  tell_state(report);
 }
 
 bool Chronicle::take_stop() {

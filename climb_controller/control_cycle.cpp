@@ -139,6 +139,8 @@ CommandVerdict ControlCycle::judge(const climb::OperatorCommand& command) {
 
 void ControlCycle::answer(const climb::OperatorCommand& command, CommandVerdict verdict) {
   answered_ = command;
+  // A stranger's number is not repeated: the next order continues ours.
+  if (verdict == CommandVerdict::kWrongSession) answered_.seq = last_seq_;
   verdict_ = verdict;
   ++num_answers_;
 }

@@ -23,12 +23,15 @@
 #include "simulator/plant/line_hub.h"
 #include "simulator/plant/robot_plant.h"
 #include "simulator/plant/truth_message.h"
+#include "simulator/plant/truth_perception.h"
 
 namespace {
 
 constexpr int kExitArguments = 2;
 constexpr int kExitNoDoor = 3;
 constexpr std::int64_t kTruthPeriod_us = 100'000;
+constexpr std::int64_t kRungsPeriod_us = 66'667;
+constexpr std::int64_t kImuPeriod_us = 10'000;
 /// A process that was held up goes on from where it is, it does not run after lost seconds.
 constexpr std::int64_t kMaxCatchUp_us = 100'000;
 
@@ -43,6 +46,7 @@ struct Arguments {
   std::string faults_path;
   std::vector<std::string> faults;
   std::string truth_url;
+  std::string rungs_url;
   double seconds = 0.0;
   double undock_s = -1.0;
   double print_period_s = 1.0;
@@ -61,6 +65,8 @@ void parse(int argc, char** argv, Arguments& arguments) {
   app.add_option("--fault", arguments.faults, "one such line; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--truth", arguments.truth_url, "publish LADDER_TRUTH on this LCM provider");
+  app.add_option("--rungs-from-truth", arguments.rungs_url,
+                 "publish LADDER_RUNGS and LADDER_IMU on this LCM provider");
   app.add_option("--seconds", arguments.seconds, "stop after this time");
   app.add_option("--undock_s", arguments.undock_s, "release the dock at this time");
   app.add_option("--print_period_s", arguments.print_period_s, "0: print nothing");
@@ -128,6 +134,7 @@ class RunningPlant {
       chip_.emplace(arguments.lines, std::array<int, simulator::kNumLines>{0, 1, 2, 3, 4});
     }
     if (!arguments.truth_url.empty()) truth_bus_.emplace(arguments.truth_url);
+    if (!arguments.rungs_url.empty()) rungs_bus_.emplace(arguments.rungs_url);
   }
 
   void run() {
@@ -167,6 +174,7 @@ class RunningPlant {
     if (lines_) lines_->publish(plant_.lines());
     if (chip_ && !chip_->publish(plant_.lines())) ++num_line_failures_;
     if (truth_bus_ && now_us >= truth_due_us_) publish_truth(now_us);
+    if (rungs_bus_) publish_perception(now_us);
     const auto period_us = static_cast<std::int64_t>(arguments_.print_period_s * 1e6);
     if (period_us > 0 && now_us >= print_due_us_) {
       print_due_us_ = now_us + period_us;
@@ -180,6 +188,22 @@ class RunningPlant {
         simulator::truth_message(plant_.truth(), plant_.world(), odom_origin_m_, utime_us());
     message.seq = truth_seq_++;
     truth_bus_->publish(runtime::channels::kTruth, message);
+  }
+
+  void publish_perception(std::int64_t now_us) {
+    if (now_us >= imu_due_us_) {
+      imu_due_us_ = now_us + kImuPeriod_us;
+      ladder_msgs::imu_t message = simulator::imu_message(plant_.imu(), utime_us());
+      message.seq = imu_seq_++;
+      rungs_bus_->publish(runtime::channels::kImu, message);
+    }
+    if (now_us >= rungs_due_us_) {
+      rungs_due_us_ = now_us + kRungsPeriod_us;
+      ladder_msgs::ladder_t message =
+          simulator::true_rungs(plant_.world(), odom_origin_m_, utime_us());
+      message.seq = message.topology_seq = rungs_seq_++;
+      rungs_bus_->publish(runtime::channels::kRungs, message);
+    }
   }
 
   void print(std::int64_t now_us) {
@@ -211,11 +235,16 @@ class RunningPlant {
   std::optional<simulator::LineHub> lines_;
   std::optional<simulator::SimulatedChip> chip_;
   std::optional<runtime::Bus> truth_bus_;
+  std::optional<runtime::Bus> rungs_bus_;
   std::vector<pollfd> descriptors_;
   std::int64_t last_us_ = 0;
   std::int64_t print_due_us_ = 0;
   std::int64_t truth_due_us_ = 0;
   std::int64_t truth_seq_ = 0;
+  std::int64_t imu_due_us_ = 0;
+  std::int64_t imu_seq_ = 0;
+  std::int64_t rungs_due_us_ = 0;
+  std::int64_t rungs_seq_ = 0;
   std::int64_t num_line_failures_ = 0;
 };
 
