@@ -7,7 +7,7 @@ namespace {
 constexpr float kVariance_m2 = 1e-6F;
 constexpr float kFromEnd_m = 0.02F;
 
-void add_rung(ladder_msgs::ladder_t& m, int index, const Rung& rung,
+void add_rung(ladder_msgs::ladder_t& m, int index, const LadderRung& rung,
               const Eigen::Vector3d& odom_origin_m) {
   // End 0 is the left one, seen by the robot.
   const bool is_left_first = rung.end0_m.y() > rung.end1_m.y();
@@ -55,7 +55,7 @@ ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Vector3d& 
   message.spacing_m = 0.30F;
   message.spacing_sigma_m = 0.001F;
   for (int index = 0; index < world.num_rungs(); ++index) {
-    const Rung& rung = world.rung(index);
+    const LadderRung& rung = world.rung(index);
     if (!rung.broken) add_rung(message, index, rung, odom_origin_m);
   }
   return message;
