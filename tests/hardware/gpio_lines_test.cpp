@@ -29,6 +29,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr std::int64_t kPeriod_us = 10'000;
+/// 5 ms of debouncing and a tick, 20 ms at most (exact in virtual time, tests/gpio), and 50 ms for
+/// the slowness of the emulated machine.
+constexpr std::int64_t kBound_us = 70'000;
 constexpr int kPatience_ms = 5'000;
 constexpr LineStates kAtRest{{}, false, false};
 const std::vector<std::string> kNames = {"",         "TOUCH_FL", "TOUCH_FR", "TOUCH_RL",
@@ -218,6 +221,7 @@ TEST_F(GpioTest, FiftyPresses) {
       chip.set(offset_of(kEstop), false);
       const auto pressed = loop->run_until({{}, true, false});
       ASSERT_TRUE(pressed) << "press " << i << " was missed";
+      EXPECT_LE(pressed->time_us, kBound_us) << "press " << i;
       EXPECT_LE(pressed->num_ticks, 3) << "press " << i;
       times_us.push_back(pressed->time_us);
       chip.set(offset_of(kEstop), true);
@@ -238,6 +242,7 @@ TEST_F(GpioTest, TakenAwayAndBroughtBack) {
     unbinds ? chip.unbind() : chip.destroy();
     const auto gone = loop->run_until({});
     ASSERT_TRUE(gone) << "loss " << i << " was missed";
+    EXPECT_LE(gone->time_us, kBound_us);
     EXPECT_LE(gone->num_ticks, 1);
     gone_us.push_back(gone->time_us);
     EXPECT_EQ(lines->wake_fd(), -1);
