@@ -165,7 +165,7 @@ void Tour::lose(climb::Leg leg) {
   const bool is_time = now.state == S::kClimbing && now.limb == LimbState::kTransit;
   if (is_time && now.leg != leg && leg_in_trouble_ < 0) {
     leg_in_trouble_ = leg;
-    const int rung = box_.plant().claw(leg).rung_index();
+    const int rung = box_.plant().leg(leg).rung_index;
     if (rung >= 0) box_.plant().world().rung(rung).break_at_us = box_.now_us();
     next_trouble_us_ = box_.now_us() + 1'000'000;
   }
