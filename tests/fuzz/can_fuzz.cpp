@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arbitrary bytes as frames into both servo buses and all decoders: what is understood must encode
-// to the same bytes, and no frame may break an invariant. Each 18 bytes: one struct can_frame, a
-// flag byte and a byte of time.
+// to the same bytes, and no frame may break an invariant. The first byte chooses: ODrives, CiA 402
+// drives that never answer, or such that do (scripted_drive.h), brought up before the rain. Then
+// each 18 bytes: one struct can_frame, a flag byte and a byte of time.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -14,32 +16,40 @@
 #include "can/kernel_frame.h"
 #include "can/odrive.h"
 #include "can/odrive_bus.h"
+#include "tests/can/scripted_drive.h"
 
 namespace {
 
 using can::CanFrame;
 
-/// Hands out the fuzzer's frames and forgets what is sent.
+/// Hands out the fuzzer's frames and what the drives answer.
 class ByteLine : public can::Transport {
  public:
   can::TransferStatus send(const CanFrame& frame) override {
     CHECK(can::is_plain(frame) && frame.dlc <= 8, "only plain frames are sent");
     ++num_sent;
+    for (can::ScriptedDrive& drive : drives) {
+      for (const CanFrame& answer : drive.hear(frame)) put(answer);
+    }
     return can::TransferStatus::kDone;
   }
   can::TransferStatus receive(can::ReceivedFrame& received) override {
-    if (!has_frame) return can::TransferStatus::kWouldBlock;
-    has_frame = false;
-    received = next;
+    if (waiting_.empty()) return can::TransferStatus::kWouldBlock;
+    received = {waiting_.front(), 0, false};
+    waiting_.pop_front();
     return can::TransferStatus::kDone;
   }
   bool has_unsent_frames() const override { return false; }
   bool maintain(std::int64_t) override { return true; }
   can::PurgeResult purge_transmit_queue() override { return can::PurgeResult::kPurged; }
 
-  can::ReceivedFrame next;
-  bool has_frame = false;
+  void put(const CanFrame& frame) { waiting_.push_back(frame); }
+
+  std::vector<can::ScriptedDrive> drives;
   std::size_t num_sent = 0;
+
+ private:
+  std::deque<CanFrame> waiting_;
 };
 
 template <class Message>
@@ -82,18 +92,39 @@ can::AxisConfig axis_of(int node) {
   return axis;
 }
 
+constexpr std::int64_t kStart_us = 1'000'000;
+
+/// Two drives, enabled. Returns the time it is then.
+std::int64_t bring_up(can::ServoBus& bus, ByteLine& line) {
+  line.drives = {can::ScriptedDrive(1), can::ScriptedDrive(2)};
+  std::vector<can::AxisFeedback> feedback(2);
+  std::vector<can::AxisTarget> targets(2);
+  for (can::AxisTarget& target : targets) target.position_rad = 1.0;  // where they stand
+  std::int64_t now_us = kStart_us;
+  bus.configure();
+  for (int i = 0; i < 40; ++i, now_us += 10'000) {
+    if (bus.phase() == can::BusPhase::kReady) bus.enable();
+    if (bus.phase() == can::BusPhase::kEnabled) break;
+    for (int poll = 0; poll < 8; ++poll) bus.poll(now_us + 1000 * poll);
+    bus.begin_cycle(now_us + 9000, feedback);
+    bus.end_cycle({now_us + 9000, targets});
+  }
+  CHECK(bus.phase() == can::BusPhase::kEnabled, "sound drives come up");
+  return now_us;
+}
+
 /// One bus under a rain of frames, asked for everything now and then.
-void rain(can::ServoBus& bus, ByteLine& line, const std::uint8_t* bytes, std::size_t size) {
-  std::int64_t now_us = 1'000'000;
+void rain(can::ServoBus& bus, ByteLine& line, std::int64_t now_us, const std::uint8_t* bytes,
+          std::size_t size) {
   std::vector<can::AxisTarget> targets(2);
   std::vector<can::AxisFeedback> feedback(2);
   for (; size >= 18; bytes += 18, size -= 18) {
     ::can_frame raw{};
     std::memcpy(&raw, bytes, sizeof raw);
-    line.next.frame = can::from_kernel(raw);
-    line.next.frame.fd = line.next.frame.fd || (bytes[16] & 0x80) != 0;
-    line.has_frame = true;
-    check_decoders(line.next.frame);
+    CanFrame frame = can::from_kernel(raw);
+    frame.fd = frame.fd || (bytes[16] & 0x80) != 0;
+    line.put(frame);
+    check_decoders(frame);
     now_us += 1000 * bytes[17];
     switch (bytes[16] & 0x0F) {
       case 0:
@@ -138,13 +169,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     params.axes = {axis_of(1), axis_of(2)};
     params.listen_us = 1000;
     can::Cia402Bus bus(params, line);
-    rain(bus, line, bytes + 1, size - 1);
+    const bool are_there = (bytes[0] & 2) != 0;
+    rain(bus, line, are_there ? bring_up(bus, line) : kStart_us, bytes + 1, size - 1);
   } else {
     can::OdriveParams params;
     params.axes = {axis_of(1), axis_of(2)};
     params.listen_us = 1000;
     can::OdriveBus bus(params, line);
-    rain(bus, line, bytes + 1, size - 1);
+    rain(bus, line, kStart_us, bytes + 1, size - 1);
   }
   return 0;
 }
