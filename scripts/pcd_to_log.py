@@ -105,10 +105,11 @@ def organised_head(options, cloud):
 
 
 def default_view(points, range_max_m):
-    """In the middle of the cloud, 0.55 m above its low points, looking where most points are in range."""
+    """In the middle of the cloud, 0.55 m above its low points, looking where most points are in range; in whole
+    millimetres, as it is printed."""
     sample = points[:: max(1, len(points) // 5000)]
-    x, y = (sorted(p[i] for p in sample)[len(sample) // 2] for i in range(2))
-    z = sorted(p[2] for p in sample)[len(sample) // 20] + 0.55
+    x, y = (round(sorted(p[i] for p in sample)[len(sample) // 2], 3) for i in range(2))
+    z = round(sorted(p[2] for p in sample)[len(sample) // 20] + 0.55, 3)
 
     def num_ahead(yaw_deg):
         cosine, sine = math.cos(math.radians(yaw_deg)), math.sin(math.radians(yaw_deg))

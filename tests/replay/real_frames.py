@@ -5,6 +5,7 @@ import os
 import pathlib
 import subprocess
 import sys
+import typing
 
 sys.dont_write_bytecode = True
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
@@ -12,6 +13,14 @@ sys.path.insert(0, str(REPOSITORY / "scripts"))
 from ladder_scripts import codecs, lcm_log  # noqa: E402
 
 FRAMES = 30
+
+
+class Frame(typing.NamedTuple):
+    """The messages of one frame."""
+
+    cloud: object
+    topology: object
+    ladder: object
 
 
 class Missing(Exception):
@@ -27,7 +36,7 @@ def recording(name):
 
 
 def understand(name, folder, *options):
-    """(topology_t, ladder_t) of each frame of a recording repeated FRAMES times."""
+    """Each Frame of a recording repeated FRAMES times."""
     replay = REPOSITORY / "build/release/bin/ladder_replay"
     if not replay.exists():
         raise Missing("ladder_replay is not built")
@@ -37,10 +46,11 @@ def understand(name, folder, *options):
     subprocess.run([replay, raw, "-o", understood, "--config", REPOSITORY / "config/robot.toml"],
                    check=True, stderr=subprocess.DEVNULL)
     messages = codecs.load_messages()
-    topology, frames = None, []
+    types = {"LADDER_CLOUD": messages.point_cloud_t, "LADDER_TOPOLOGY": messages.topology_t, "LADDER_RUNGS": messages.ladder_t}
+    newest, frames = {}, []
     for _, channel, data in lcm_log.read_events(understood.read_bytes()):
-        if channel == "LADDER_TOPOLOGY":
-            topology = messages.topology_t.decode(data)
-        elif channel == "LADDER_RUNGS":
-            frames.append((topology, messages.ladder_t.decode(data)))
+        if channel in types:
+            newest[channel] = types[channel].decode(data)
+        if channel == "LADDER_RUNGS":
+            frames.append(Frame(*(newest[name] for name in types)))
     return frames
