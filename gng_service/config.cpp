@@ -62,12 +62,14 @@ void read(runtime::ConfigTable table, ddgng::StructureParams& params) {
   table.read("plane_min_support", params.plane_min_support);
   table.read("plane_behind_distance_m", params.plane_behind_distance_m);
   table.read("plane_max_behind", params.plane_max_behind);
+  table.read("ground_max_below", params.ground_max_below);
   table.read("duplicate_angle_deg", params.duplicate_angle_deg);
   table.read("duplicate_distance_m", params.duplicate_distance_m);
   table.read("node_plane_distance_m", params.node_plane_distance_m);
   table.read("node_plane_per_range", params.node_plane_per_range);
   table.read("level_within_deg", params.level_within_deg);
-  table.read("level_min_support", params.level_min_support);
+  table.read("upright_within_deg", params.upright_within_deg);
+  table.read("aligned_min_support", params.aligned_min_support);
   table.read("level_min_spread_m", params.level_min_spread_m);
   table.read("floor_height_known", params.floor_height_known);
   table.read("floor_height_m", params.floor_height_m);
@@ -84,11 +86,6 @@ void read(runtime::ConfigTable table, ddgng::StructureParams& params) {
   table.read("workspace_above_floor_m", params.workspace_above_floor_m);
   table.read("attention_plane_distance_m", params.attention_plane_distance_m);
   table.read("attention_plane_per_range", params.attention_plane_per_range);
-  table.read("residual_patches", params.residual_patches);
-  table.read("patch_interval_frames", params.patch_interval_frames);
-  table.read("patch_cell_m", params.patch_cell_m);
-  table.read("patch_min_interior_m2", params.patch_min_interior_m2);
-  table.read("patch_min_interior_share", params.patch_min_interior_share);
   table.require(check(params));
 }
 

@@ -34,7 +34,7 @@ Plane lowest_ground(const std::vector<Plane>& planes, const Eigen::Vector3f& hea
 }  // namespace
 
 Attention::Attention(const StructureParams& params, std::size_t max_points)
-    : params_(params), max_points_(max_points), patches_(params) {
+    : params_(params), max_points_(max_points) {
   workspace_.near_m = params.workspace_near_m;
   workspace_.lateral_m = params.workspace_lateral_m;
   workspace_.floor = no_floor();
@@ -86,22 +86,7 @@ std::span<const std::uint32_t> Attention::select(const CloudView& cloud) {
       num_selected += in_region_[i];
     }
   }
-  if (params_.residual_patches) num_selected = leave_out_patches(cloud, num_selected);
   return {selected_.data(), num_selected};
-}
-
-// Patches stay until the next search, as planes stay until the next frame.
-std::size_t Attention::leave_out_patches(const CloudView& cloud, std::size_t num_selected) {
-  if (cloud.sequence % static_cast<std::uint64_t>(params_.patch_interval_frames) == 0) {
-    patches_.find(cloud, {selected_.data(), num_selected});
-  }
-  const auto is_in_patch = [&](std::uint32_t i) {
-    const Eigen::Vector3f p(cloud.x_m[i], cloud.y_m[i], cloud.z_m[i]);
-    return patches_.contains(p, clearance_m(p));
-  };
-  const auto begin = selected_.begin();
-  const auto end = begin + static_cast<std::ptrdiff_t>(num_selected);
-  return static_cast<std::size_t>(std::remove_if(begin, end, is_in_patch) - begin);
 }
 
 // Points nearer to a plane than this belong to it.
@@ -175,8 +160,7 @@ bool Attention::contains(const Eigen::Vector3f& p) const {
       ahead_m > w.near_m && ahead_m < w.far_m && std::abs(aside_m) < w.lateral_m &&
       w.floor.normal.dot(p) - w.floor.offset_m > params_.workspace_above_floor_m;
   const float clear_m = clearance_m(p);
-  return in_workspace && !patches_.contains(p, clear_m) &&
-         std::all_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
+  return in_workspace && std::all_of(planes_.begin(), planes_.end(), [&](const Plane& plane) {
            return std::abs(plane.normal.dot(p) - plane.offset_m) > clear_m;
          });
 }

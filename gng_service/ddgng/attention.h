@@ -12,7 +12,6 @@
 #include <Eigen/Core>
 
 #include "ddgng/cloud.h"
-#include "ddgng/plane_patches.h"
 #include "ddgng/structure_params.h"
 #include "ddgng/topology.h"
 
@@ -51,7 +50,6 @@ class Attention {
   void set_workspace(const Topology& previous, const CloudView& cloud);
   void mark_in_boxes(const CloudView& cloud, std::size_t begin, std::size_t size);
   void mark_off_planes(const CloudView& cloud, std::size_t begin, std::size_t size);
-  std::size_t leave_out_patches(const CloudView& cloud, std::size_t num_selected);
   float clearance_m(const Eigen::Vector3f& p) const;
 
   StructureParams params_;
@@ -59,7 +57,6 @@ class Attention {
   std::vector<Box> boxes_;  ///< suspected objects, without margin
   Workspace workspace_;
   std::vector<Plane> planes_;                      ///< what attention leaves out
-  PlanePatches patches_;                           ///< and these, when they are wanted
   std::array<std::uint32_t, kBlock> in_region_{};  ///< of one block of points: 1 or 0
   std::vector<std::uint32_t> selected_;
 };

@@ -21,6 +21,25 @@ float floor_height_m(const Topology& topology) {
   return lowest_m < kInfinity ? lowest_m : -kInfinity;
 }
 
+/// Axes ahead and to the left of the heads, from the heads.
+struct LevelFrame {
+  Eigen::Vector2f ahead;  ///< unit
+  Eigen::Vector3f origin_m;
+
+  Eigen::Vector3f turn(const Eigen::Vector3f& v) const {
+    return {ahead.x() * v.x() + ahead.y() * v.y(), ahead.x() * v.y() - ahead.y() * v.x(), v.z()};
+  }
+  /// The box about the turned box.
+  Eigen::AlignedBox3f turn(const Eigen::AlignedBox3f& box_m) const {
+    const Eigen::Vector3f center_m = turn(box_m.center() - origin_m);
+    const Eigen::Vector3f half_m = 0.5F * box_m.sizes();
+    const Eigen::Vector2f cosines = ahead.cwiseAbs();
+    const Eigen::Vector3f turned_m(cosines.x() * half_m.x() + cosines.y() * half_m.y(),
+                                   cosines.x() * half_m.y() + cosines.y() * half_m.x(), half_m.z());
+    return {center_m - turned_m, center_m + turned_m};
+  }
+};
+
 }  // namespace
 
 ObjectFinder::ObjectFinder(const StructureParams& params, int max_nodes, int max_faces)
@@ -122,28 +141,29 @@ void ObjectFinder::find_shared_nodes(const Topology& topology) {
   std::sort(shared_.begin(), shared_.end());
 }
 
-// Suspected: in the moving space already, or moving towards it and there within sweep_time_s.
+// Suspected: in the moving space already, or moving towards it and there within sweep_time_s. The
+// space lies where the heads look, as the attention's workspace does.
 // PAPER: an object in the space stays suspected while it moves away; docs/EQUATIONS.md.
 void ObjectFinder::set_suspected(const CloudView& cloud, Topology& topology) {
   if (const auto heads_m = mean_head_position(cloud)) heads_m_ = *heads_m;
+  const LevelFrame frame{cloud.ahead, {heads_m_.x(), heads_m_.y(), 0.0F}};
   const float ahead_m = params_.space_ahead_m > 0.0F ? params_.space_ahead_m : cloud.range_max_m;
-  const float floor_m = floor_height_m(topology);
   const Eigen::AlignedBox3f space(
-      Eigen::Vector3f(heads_m_.x(), heads_m_.y() - params_.space_lateral_m, floor_m),
-      Eigen::Vector3f(heads_m_.x() + ahead_m, heads_m_.y() + params_.space_lateral_m, kInfinity));
-  const Eigen::Vector2f space_center_m(heads_m_.x() + 0.5F * ahead_m, heads_m_.y());
+      Eigen::Vector3f(0.0F, -params_.space_lateral_m, floor_height_m(topology)),
+      Eigen::Vector3f(ahead_m, params_.space_lateral_m, kInfinity));
 
   for (std::size_t i = 0; i < boxes_m_.size(); ++i) {
     Object& object = topology.objects[i];
-    if (object.size_m.y() >= params_.max_object_width_m) continue;
-    object.suspected = space.intersects(boxes_m_[i]);
+    const Eigen::AlignedBox3f box = frame.turn(boxes_m_[i]);
+    if (box.sizes().y() >= params_.max_object_width_m) continue;
+    object.suspected = space.intersects(box);
     if (object.suspected || object.velocity_m_s.norm() < params_.static_speed_m_s) continue;
-    const Eigen::Vector3f way_m = object.velocity_m_s * params_.sweep_time_s;
-    Eigen::AlignedBox3f swept = boxes_m_[i];
-    swept.extend(boxes_m_[i].translated(way_m));
-    const bool approaches =
-        object.velocity_m_s.head<2>().dot(space_center_m - object.center_m.head<2>()) > 0.0F;
-    object.suspected = approaches && space.intersects(swept);
+    const Eigen::Vector3f way_m = frame.turn(object.velocity_m_s) * params_.sweep_time_s;
+    Eigen::AlignedBox3f swept = box;
+    swept.extend(box.translated(way_m));
+    const Eigen::Vector2f to_space_m =
+        Eigen::Vector2f(0.5F * ahead_m, 0.0F) - box.center().head<2>();
+    object.suspected = way_m.head<2>().dot(to_space_m) > 0.0F && space.intersects(swept);
   }
 }
 

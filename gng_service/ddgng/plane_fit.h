@@ -8,11 +8,11 @@
 namespace ddgng {
 
 struct PlaneFit {
-  Eigen::Vector3d normal, short_axis, long_axis;  ///< unit, in the order of growing spread
+  Eigen::Vector3d normal, short_axis;  ///< unit: of the smallest and the middle spread
   Eigen::Vector3d mean_m;
 
   static PlaneFit level(const Eigen::Vector3d& p) {
-    return {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX(), p};
+    return {Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY(), p};
   }
   double distance_m(const Eigen::Vector3d& p) const { return normal.dot(p - mean_m); }
 };
@@ -37,7 +37,7 @@ class PlaneSums {
     // compute(), not computeDirect(): only square roots, so the same bits everywhere.
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance_m2);
     const Eigen::Matrix3d& axes = solver.eigenvectors();
-    return {axes.col(0), axes.col(1), axes.col(2), origin_m_ + mean_m};
+    return {axes.col(0), axes.col(1), origin_m_ + mean_m};
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "base/rng.h"
 #include "ddgng/classification.h"
@@ -14,10 +15,12 @@ namespace ddgng {
 PlaneFinder::PlaneFinder(const StructureParams& params, int max_nodes, int max_faces)
     : params_(params),
       duplicate_cosine_(cosine_of_degrees(params.duplicate_angle_deg)),
-      level_cosine_(cosine_of_degrees(params.level_within_deg)) {
+      level_cosine_(cosine_of_degrees(params.level_within_deg)),
+      upright_cosine_(cosine_of_degrees(90.0 - params.upright_within_deg)),
+      ground_cosine_(cosine_of_degrees(params.safe_ground_slope_deg)) {
   sample_m_.reserve(params.plane_sample_points);
   rest_m_.reserve(params.plane_sample_points);
-  heights_m_.reserve(params.plane_sample_points);
+  offsets_m_.reserve(params.plane_sample_points);
   large_labels_.reserve(max_faces / std::max(1, params.large_faces) + 1);
   counted_for_.reserve(max_nodes);
 }
@@ -38,7 +41,7 @@ void PlaneFinder::build(const CloudView& cloud, Topology& topology) {
   counted_for_.assign(topology.num_nodes(), -1);
   for (const int label : large_labels_) {
     const PlaneFit fit = fit_to_nodes(label, topology);
-    add_if_sound(level_where_supported(refit_to_sample(fit)), fit.mean_m, topology);
+    add_if_sound(aligned_where_supported(refit_to_sample(fit)), fit.mean_m, topology);
   }
   add_level_plane_among_the_rest(topology);
   assign_nodes(topology);
@@ -99,28 +102,48 @@ int PlaneFinder::num_on(const PlaneFit& fit) const {
       }));
 }
 
-// The lowest step pulls at the floor's refit. Floors are level and z is up: so the level plane wins
-// unless the tilted one carries clearly more points (a ramp).
-PlaneFit PlaneFinder::level_where_supported(const PlaneFit& fit) {
-  if (std::abs(fit.normal.z()) < level_cosine_) return fit;
-  PlaneFit level = PlaneFit::level(fit.mean_m);
-  PlaneFit inliers_of = fit;
-  constexpr int kRounds = 2;
-  for (int round = 0; round < kRounds; ++round) {
-    heights_m_.clear();
-    for (const Eigen::Vector3d& p : sample_m_) {
-      if (std::abs(inliers_of.distance_m(p)) < params_.plane_on_distance_m) {
-        heights_m_.push_back(p.z());
-      }
-    }
-    if (heights_m_.empty()) return fit;
-    const auto median = heights_m_.begin() + static_cast<std::ptrdiff_t>(heights_m_.size() / 2);
-    std::nth_element(heights_m_.begin(), median, heights_m_.end());
-    level.mean_m.z() = *median;
-    inliers_of = level;
+// Gravity is known: floors are level and walls upright, whatever pulls at their refit (the lowest
+// step of a stair, the foot of a wall). The plane turned so wins unless the tilted one carries
+// clearly more points (a ramp).
+PlaneFit PlaneFinder::aligned_where_supported(const PlaneFit& fit) {
+  const double slope_cosine = std::abs(fit.normal.z());
+  const bool is_nearly_level = slope_cosine >= level_cosine_;
+  if (!is_nearly_level && slope_cosine > upright_cosine_) return fit;
+  const Eigen::Vector3d level_part(fit.normal.x(), fit.normal.y(), 0.0);
+  const PlaneFit aligned =
+      turned(fit, is_nearly_level ? Eigen::Vector3d::UnitZ() : level_part.normalized());
+  const double least = static_cast<double>(params_.aligned_min_support) * num_on(fit);
+  return num_on(aligned) >= least ? aligned : fit;
+}
+
+// With this normal, where most points are within the reach of the fit's own points.
+PlaneFit PlaneFinder::turned(const PlaneFit& fit, const Eigen::Vector3d& normal) {
+  PlaneFit result = fit;
+  result.normal = normal;
+  double low_m = std::numeric_limits<double>::infinity();
+  double high_m = -low_m;
+  for (const Eigen::Vector3d& p : sample_m_) {
+    if (std::abs(fit.distance_m(p)) >= params_.plane_refit_distance_m) continue;
+    low_m = std::min(low_m, result.distance_m(p));
+    high_m = std::max(high_m, result.distance_m(p));
   }
-  const double least = static_cast<double>(params_.level_min_support) * num_on(fit);
-  return num_on(level) >= least ? level : fit;
+  collect_offsets(result, low_m, high_m);
+  result.mean_m += densest_offset_m() * normal;
+  collect_offsets(result, -params_.plane_on_distance_m, params_.plane_on_distance_m);
+  if (offsets_m_.empty()) return result;
+  const auto median = offsets_m_.begin() + static_cast<std::ptrdiff_t>(offsets_m_.size() / 2);
+  std::nth_element(offsets_m_.begin(), median, offsets_m_.end());
+  result.mean_m += *median * normal;
+  return result;
+}
+
+// Distances from the plane that lie between the two.
+void PlaneFinder::collect_offsets(const PlaneFit& plane, double low_m, double high_m) {
+  offsets_m_.clear();
+  for (const Eigen::Vector3d& p : sample_m_) {
+    const double offset_m = plane.distance_m(p);
+    if (offset_m >= low_m && offset_m <= high_m) offsets_m_.push_back(offset_m);
+  }
 }
 
 // A floor once missed draws the attention and gets dense nodes, whose normals scatter so that it
@@ -128,7 +151,9 @@ PlaneFit PlaneFinder::level_where_supported(const PlaneFit& fit) {
 // tried, too. It must spread in both directions, else it is a strip of a wall.
 void PlaneFinder::add_level_plane_among_the_rest(Topology& topology) {
   collect_rest(topology);
-  const double height_m = densest_height_m();
+  offsets_m_.clear();
+  for (const Eigen::Vector3d& p : rest_m_) offsets_m_.push_back(p.z());
+  const double height_m = densest_offset_m();
   PlaneSums sums;
   for (const Eigen::Vector3d& p : rest_m_) {
     if (std::abs(p.z() - height_m) < params_.plane_on_distance_m) sums.add(p);
@@ -143,7 +168,7 @@ void PlaneFinder::add_level_plane_among_the_rest(Topology& topology) {
   }
   const double least_m = params_.level_min_spread_m;
   if (spread_m2 < least_m * least_m || std::abs(fit.normal.z()) < level_cosine_) return;
-  add_if_sound(level_where_supported(fit), fit.mean_m, topology);
+  add_if_sound(aligned_where_supported(fit), fit.mean_m, topology);
 }
 
 void PlaneFinder::collect_rest(const Topology& topology) {
@@ -158,21 +183,19 @@ void PlaneFinder::collect_rest(const Topology& topology) {
   }
 }
 
-// The middle of the level slab with most points of the rest.
-double PlaneFinder::densest_height_m() {
-  heights_m_.clear();
-  for (const Eigen::Vector3d& p : rest_m_) heights_m_.push_back(p.z());
-  std::sort(heights_m_.begin(), heights_m_.end());
+// The middle point of the slab with most points.
+double PlaneFinder::densest_offset_m() {
+  std::sort(offsets_m_.begin(), offsets_m_.end());
   const double slab_m = 2.0 * params_.plane_on_distance_m;
   std::size_t most = 0;
-  double height_m = 0.0;
-  for (std::size_t low = 0, high = 0; low < heights_m_.size(); ++low) {
-    while (high < heights_m_.size() && heights_m_[high] - heights_m_[low] < slab_m) ++high;
+  double middle_m = 0.0;
+  for (std::size_t low = 0, high = 0; low < offsets_m_.size(); ++low) {
+    while (high < offsets_m_.size() && offsets_m_[high] - offsets_m_[low] < slab_m) ++high;
     if (high - low <= most) continue;
     most = high - low;
-    height_m = heights_m_[low + most / 2];
+    middle_m = offsets_m_[low + most / 2];
   }
-  return height_m;
+  return middle_m;
 }
 
 void PlaneFinder::add_if_sound(PlaneFit fit, const Eigen::Vector3d& center_m,
@@ -201,17 +224,22 @@ bool PlaneFinder::is_duplicate(const PlaneFit& fit, const Eigen::Vector3d& cente
 }
 
 // A plane carries its share of the points, and few points lie behind it: the heads do not see
-// through it. The front of a ladder fails.
+// through it. The front of a ladder fails. Under ground lies nothing at all; a plane through the
+// tops of rubble has as many points below as above.
 bool PlaneFinder::is_supported_and_opaque(const PlaneFit& fit) const {
+  const bool is_ground = std::abs(fit.normal.z()) >= ground_cosine_;
   float num_on = 0.0F;
   float num_behind = 0.0F;
+  float num_below = 0.0F;
   for (const Eigen::Vector3d& p : sample_m_) {
     const double distance_m = fit.distance_m(p);
     if (std::abs(distance_m) < params_.plane_on_distance_m) ++num_on;
     if (distance_m < -params_.plane_behind_distance_m) ++num_behind;
+    if (is_ground && distance_m <= -params_.plane_on_distance_m) ++num_below;
   }
   return num_on >= params_.plane_min_support * static_cast<float>(sample_m_.size()) &&
-         num_behind <= params_.plane_max_behind * num_on;
+         num_behind <= params_.plane_max_behind * num_on &&
+         num_below <= params_.ground_max_below * num_on;
 }
 
 // The nearest plane within the distance; ties to the first.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Large labels refitted to points of the cloud, and the nodes that lie on them. Beyond the paper:
 // labels scatter where nodes are dense, planes do not. A ladder's front is no plane, because the
-// heads see through it (opaque test). z is up: nearly level planes are tried exactly level, and a
-// floor that is no large label is looked for by height.
+// heads see through it (opaque test). z is up: nearly level planes are tried exactly level,
+// nearly upright ones exactly upright, and a floor that is no large label is looked for by height.
 #pragma once
 
 #include <vector>
@@ -29,10 +29,12 @@ class PlaneFinder {
   void order_large_labels(const Topology& topology);
   PlaneFit fit_to_nodes(int label_index, const Topology& topology);
   PlaneFit refit_to_sample(PlaneFit fit) const;
-  PlaneFit level_where_supported(const PlaneFit& fit);
+  PlaneFit aligned_where_supported(const PlaneFit& fit);
+  PlaneFit turned(const PlaneFit& fit, const Eigen::Vector3d& normal);
   void add_level_plane_among_the_rest(Topology& topology);
   void collect_rest(const Topology& topology);
-  double densest_height_m();
+  void collect_offsets(const PlaneFit& plane, double low_m, double high_m);
+  double densest_offset_m();
   int num_on(const PlaneFit& fit) const;
   bool is_duplicate(const PlaneFit& fit, const Eigen::Vector3d& center_m,
                     const Topology& topology) const;
@@ -41,13 +43,13 @@ class PlaneFinder {
   void assign_nodes(Topology& topology) const;
 
   StructureParams params_;
-  double duplicate_cosine_, level_cosine_;
+  double duplicate_cosine_, level_cosine_, upright_cosine_, ground_cosine_;
   Eigen::Vector3d heads_m_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> sample_m_;
   std::vector<Eigen::Vector3d> rest_m_;  ///< of the sample: off all planes
   std::vector<int> large_labels_;        ///< largest area first
-  std::vector<double> heights_m_;
-  std::vector<int> counted_for_;  ///< the last label that a node was counted for
+  std::vector<double> offsets_m_;        ///< along a normal
+  std::vector<int> counted_for_;         ///< the last label that a node was counted for
 };
 
 }  // namespace ddgng

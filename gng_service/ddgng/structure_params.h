@@ -43,18 +43,20 @@ struct StructureParams {
   int plane_min_points = 20;              ///< [points of the sample] a refit needs
   float plane_refit_distance_m = 0.05F;   ///< [m] points nearer than this take part in a refit
   float plane_on_distance_m = 0.03F;      ///< [m] points nearer than this support a plane
-  float plane_min_support = 0.07F;        ///< [share of the sample] that a plane needs
+  float plane_min_support = 0.05F;        ///< [share of the sample] that a plane needs
   float plane_behind_distance_m = 0.08F;  ///< [m] points farther behind count against opaqueness
   float plane_max_behind = 0.5F;          ///< [share of the supporting points] behind at most
+  float ground_max_below = 0.1F;          ///< [share of the supporting points] below ground at most
   float duplicate_angle_deg = 10.0F;      ///< [deg] planes closer in angle
   float duplicate_distance_m = 0.06F;     ///< [m] and in distance are the same plane
   float node_plane_distance_m = 0.025F;   ///< [m] a node belongs to a plane nearer than this
   float node_plane_per_range = 0.01F;     ///< [m per m range] added to it
   float level_within_deg = 8.0F;          ///< [deg] a plane so near to level is tried level
-  float level_min_support = 0.8F;   ///< [share of the tilted one's support] level wins from here
-  float level_min_spread_m = 0.1F;  ///< [m] deviation across a level plane found by height
-  bool floor_height_known = false;  ///< a level plane at floor_height_m comes first
-  float floor_height_m = 0.0F;      ///< [m] in the odom frame
+  float upright_within_deg = 20.0F;       ///< [deg] a plane so near to upright is tried upright
+  float aligned_min_support = 0.8F;  ///< [share of the tilted one's support] both win from here
+  float level_min_spread_m = 0.1F;   ///< [m] deviation across a level plane found by height
+  bool floor_height_known = false;   ///< a level plane at floor_height_m comes first
+  float floor_height_m = 0.0F;       ///< [m] in the odom frame
 
   // --- objects and suspicion (paper, section II-B) ---
   float space_ahead_m = 0.0F;       ///< [m] moving space ahead of the heads; 0 = range of the heads
@@ -72,13 +74,6 @@ struct StructureParams {
   float workspace_above_floor_m = 0.06F;     ///< [m] above the floor, where a floor is known
   float attention_plane_distance_m = 0.03F;  ///< [m] points nearer to a plane are left out
   float attention_plane_per_range = 0.025F;  ///< [m per m range] added to it
-
-  // --- residual patches: bounded planes among the attention points, against lock-in (measured) ---
-  bool residual_patches = false;  ///< a surface once missed as a plane holds the attention for good
-  int patch_interval_frames = 3;  ///< [frames] between searches, > 0
-  float patch_cell_m = 0.04F;     ///< [m] side of the cells that a patch is made of
-  float patch_min_interior_m2 = 0.03F;    ///< [m2] of cells with four occupied neighbours
-  float patch_min_interior_share = 0.4F;  ///< [share of the occupied cells]: not so on a ladder
 };
 
 /// The paper's literal form: boxes, classes by labels, moving space and width limit of its program.

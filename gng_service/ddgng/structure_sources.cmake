@@ -5,7 +5,6 @@ set(DDGNG_STRUCTURE_SOURCES
     ${CMAKE_CURRENT_LIST_DIR}/classification.cpp
     ${CMAKE_CURRENT_LIST_DIR}/neighborhood.cpp
     ${CMAKE_CURRENT_LIST_DIR}/objects.cpp
-    ${CMAKE_CURRENT_LIST_DIR}/plane_patches.cpp
     ${CMAKE_CURRENT_LIST_DIR}/planes.cpp
     ${CMAKE_CURRENT_LIST_DIR}/segmentation.cpp
     ${CMAKE_CURRENT_LIST_DIR}/structure.cpp

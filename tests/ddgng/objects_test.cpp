@@ -59,6 +59,20 @@ TEST(Objects, OthersAreNot) {
   EXPECT_TRUE(only_object(tolerant, chain_at({1, 0, 0.5F}, 40), 0).suspected);
 }
 
+// The space turns with the heads: what was aside is ahead, and the other way round.
+TEST(Objects, TheSpaceLiesWhereTheHeadsLook) {
+  for (const auto& [p, suspected] :
+       {std::pair(Eigen::Vector3f(0, 2, 0.5F), true), std::pair(Eigen::Vector3f(2, 0, 0.5F), false),
+        std::pair(Eigen::Vector3f(0, -2, 0.5F), false)}) {
+    Topology topology = chain_at(p);
+    CloudView cloud = cloud_at(0);
+    cloud.ahead = Eigen::Vector2f::UnitY();
+    ObjectFinder finder(StructureParams(), 100, 100);
+    finder.build(cloud, topology);
+    EXPECT_EQ(topology.objects.at(0).suspected, suspected) << p.transpose();
+  }
+}
+
 // What lies wholly below the known ground is not suspected.
 TEST(Objects, BelowTheGroundIsNotSuspected) {
   for (const float z : {-0.2F, 0.2F}) {

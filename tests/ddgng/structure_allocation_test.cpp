@@ -23,10 +23,7 @@ void take_graph(const Topology& graph, Topology& topology) {
 
 // A small first frame, then larger and other ones: not one allocation more, in each mode.
 TEST(StructureAllocation, NoneAfterTheFirstFrame) {
-  StructureParams with_patches;
-  with_patches.residual_patches = true;
-  for (const StructureParams& params :
-       {StructureParams(), paper_structure_params(), with_patches}) {
+  for (const StructureParams& params : {StructureParams(), paper_structure_params()}) {
     std::vector<structure_scene::LadderScene> scenes;
     for (int seed = 1; seed < 5; ++seed) scenes.push_back(structure_scene::make_ladder_scene(seed));
     base::Rng rng(1);

@@ -2,7 +2,7 @@
 # The structure part: from graphs to surfaces, planes, objects and attention.
 ladder_test(ddgng_structure_test
   SOURCES structure_params_test.cpp classification_test.cpp structure_odd_inputs_test.cpp
-          structure_scene_test.cpp objects_test.cpp attention_test.cpp plane_patches_test.cpp
+          structure_scene_test.cpp planes_test.cpp objects_test.cpp attention_test.cpp
           structure_scene.cpp
   LINK ddgng LABELS unit)
 ladder_test(ddgng_structure_reference_test

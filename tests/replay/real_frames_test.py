@@ -14,6 +14,10 @@ import terrain_agreement  # noqa: E402
 
 CONFIRMED = 2
 SAFE_GROUND, WALL = 1, 2
+# Below the lowest of the last twenty frames (measured with scripts/replay).
+LEAST_AGREEING = {"far front": {"safe ground": 0.9, "wall": 0.4, "obstacle": 0.95},
+                  "chosen": {"wall": 0.75, "obstacle": 0.95},
+                  "corner": {"wall": 0.85, "obstacle": 0.95}}
 
 
 def bar_heights_m(topology, ladder):
@@ -35,8 +39,8 @@ class RealFrames(unittest.TestCase):
         """At least four of the six treads measured by hand are among few bars, each within 2 cm; nothing is called a ladder."""
         frames = self.understand("stairs/capture0005.pcd")
         self.assertEqual(len(frames), real_frames.FRAMES)
-        self.assertTrue(all(ladder.ladder_state != CONFIRMED for _, ladder in frames))
-        topology, ladder = frames[-1]
+        self.assertTrue(all(ladder.ladder_state != CONFIRMED for _, _, ladder in frames))
+        _, topology, ladder = frames[-1]
         self.assertIn(SAFE_GROUND, topology.plane_class)
         self.assertIn(WALL, topology.plane_class)
         bars_m = bar_heights_m(topology, ladder)
@@ -44,24 +48,28 @@ class RealFrames(unittest.TestCase):
             rows = csv.reader(line for line in file if not line.startswith("#"))
             treads_m = [float(row[3]) for row in rows if row]
         self.assertGreaterEqual(sum(any(abs(tread - bar) <= 0.02 for bar in bars_m) for tread in treads_m), 4)
-        self.assertLessEqual(len(bars_m), 15)
+        self.assertLessEqual(len(bars_m), 18)  # the fronts of the lowest boards are 0.17 m high and hold two or three bars each
 
     def test_stairs_from_the_side_are_no_ladder(self):
         """The same stairs in another frame confirm nothing either."""
-        self.assertTrue(all(ladder.ladder_state != CONFIRMED for _, ladder in self.understand("stairs/capture0002.pcd")))
+        self.assertTrue(all(ladder.ladder_state != CONFIRMED for _, _, ladder in self.understand("stairs/capture0002.pcd")))
 
     def test_terrain_classes_agree_with_its_planes(self):
-        """The floor is safe ground seen from one place, the walls are walls seen from another. Not held: the walls seen from the
-        first place, whose refits lean by 11 to 18 degrees (docs/EQUATIONS.md, not established)."""
-        try:
-            with tempfile.TemporaryDirectory() as folder:
-                floor = terrain_agreement.agreement("floor", folder)["safe ground"]
-                walls = terrain_agreement.agreement("walls", folder)["wall"]
-        except real_frames.Missing as missing:
-            self.skipTest(str(missing))
-        for nodes, agreeing in (floor, walls):
-            self.assertGreater(nodes, 50)
-            self.assertGreater(agreeing / nodes, 0.9)
+        """From each view the classes agree with surfaces set by hand, counted in nodes and in points. The foot of the far front is
+        held to be an obstacle, and so are glimpses of the floor between blocks (docs/EQUATIONS.md, #12)."""
+        for view, least in LEAST_AGREEING.items():
+            try:
+                with tempfile.TemporaryDirectory() as folder:
+                    found = terrain_agreement.agreement(view, folder)
+            except real_frames.Missing as missing:
+                self.skipTest(str(missing))
+            for kind, counts in found.items():
+                with self.subTest(view=view, of=kind):
+                    self.assertGreater(terrain_agreement.share(counts), 0.85)
+                    for name, share in least.items():
+                        number, agreeing = counts[name]
+                        self.assertGreater(number, 50)
+                        self.assertGreater(agreeing / number, share, name)
 
 
 if __name__ == "__main__":
