@@ -5,18 +5,12 @@ import pathlib
 import re
 import unittest
 
+import named_tests
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIBRARIES = {"ddgng": ROOT / "gng_service", "ladder": ROOT / "ladder_service"}
 TEXT = (ROOT / "docs/EQUATIONS.md").read_text()
 CODE_SPANS = re.findall(r"`([^`\n]+)`", TEXT)
-
-
-def test_names():
-    names = set()
-    for path in (ROOT / "tests").rglob("*.cpp"):
-        for suite, name in re.findall(r"^\s*TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", path.read_text(), re.M):
-            names.add(f"{suite}.{name}")
-    return names
 
 
 class Equations(unittest.TestCase):
@@ -30,7 +24,7 @@ class Equations(unittest.TestCase):
             self.assertRegex(path.read_text(), rf"\b{name}\(", place)
 
     def test_every_test_exists(self):
-        known = test_names()
+        known = named_tests.cases()
         named = [span for span in CODE_SPANS if re.fullmatch(r"[A-Z]\w*\.[A-Z]\w*", span)]
         self.assertGreater(len(named), 40)
         self.assertEqual([name for name in named if name not in known], [])
