@@ -3,12 +3,14 @@
 // them.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "can/cia402_bus.h"
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/drive_layout.h"
+#include "gpio/lines.h"
 #include "robot_in_a_box/memory_transport.h"
 #include "simulator/plant/monitor.h"
 #include "simulator/plant/robot_plant.h"
@@ -39,12 +41,14 @@ struct CycleBench {
       now_us += 1000;
       plant.advance(now_us);
       transport.set_time(now_us);
+      if (on_millisecond) on_millisecond();
       if (i < 9) cycle.poll(now_us);
     }
     see();
     cycle.step(now_us, inbox, report);
     inbox.command = {};
-    for (const simulator::CarriedFrame& carried : bus.take_carried()) monitor.on_frame(carried);
+    carried = bus.take_carried();
+    for (const simulator::CarriedFrame& frame : carried) monitor.on_frame(frame);
     monitor.on_truth(plant.truth());
     watch_session();
   }
@@ -97,12 +101,13 @@ struct CycleBench {
   std::int64_t now_us = 0;
   std::int64_t seq = 0;
   bool sees = true;
+  gpio::Lines* lines = nullptr;  ///< null: the plant's levels, as they are
+  std::function<void()> on_millisecond;
+  std::vector<simulator::CarriedFrame> carried;  ///< in the last period
 
  private:
   void see() {
-    const simulator::LineLevels levels = plant.lines();
-    for (const climb::Leg leg : climb::kLegs) inbox.lines.touch[leg] = levels[leg];
-    inbox.lines.estop_clear = levels[simulator::kEstopN];
+    see_lines();
     const simulator::ImuReading imu = plant.imu();
     inbox.imu = {imu.q_world_body, imu.specific_force_m_s2.norm(), true};
     if (!sees) return;
@@ -114,6 +119,18 @@ struct CycleBench {
     }
     inbox.ladder = {rungs_, stretches_, 0.0, true};
     inbox.ladder_received_us = now_us;
+  }
+  void see_lines() {
+    if (lines != nullptr) {
+      const gpio::LineStates& states = lines->poll(now_us);
+      for (const climb::Leg leg : climb::kLegs) inbox.lines.touch[leg] = states.touch[leg];
+      inbox.lines.estop_clear = !states.estop_active;
+      inbox.lines.lost = states.lost;
+      return;
+    }
+    const simulator::LineLevels levels = plant.lines();
+    for (const climb::Leg leg : climb::kLegs) inbox.lines.touch[leg] = levels[leg];
+    inbox.lines.estop_clear = levels[simulator::kEstopN];
   }
   void add(int index, const simulator::LadderRung& rung) {
     climb::RungView view;
