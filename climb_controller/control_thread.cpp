@@ -22,6 +22,8 @@ namespace {
 
 constexpr int kPriority = 80;
 constexpr std::int64_t kImuSilent_us = 100'000;
+constexpr int kSettleSteps = 10;
+constexpr int kSettleStep_us = 5'000;
 constexpr int kHandOverCycles = 20;   // until all drives stand and hold by themselves
 constexpr int kMaxWakesPerCycle = 8;  // by edges of the lines: a chattering wire does not starve us
 
@@ -82,11 +84,20 @@ void ControlThread::start() {
   if (const std::string problem = lines_.open(); !problem.empty()) {
     throw runtime::DeviceError("lines " + params_.lines.chip + ": " + problem);
   }
+  settle_lines();
   timer_fd_ = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
   if (timer_fd_ < 0) throw runtime::DeviceError("no timer from the kernel");
   const std::string memory = lock_memory();
   thread_ = std::thread([this] { run(); });
   rights_ = take_priority(thread_.native_handle()) + ", " + memory;
+}
+
+/// Requesting a line may move its wire for a moment: an E-stop would be latched at the start.
+void ControlThread::settle_lines() {
+  for (int i = 0; i < kSettleSteps; ++i) {
+    lines_.poll(time_us(CLOCK_MONOTONIC));
+    usleep(kSettleStep_us);
+  }
 }
 
 void ControlThread::forget_wake_up() {

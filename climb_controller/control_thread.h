@@ -74,6 +74,7 @@ class ControlThread {
   const std::string& rights() const { return rights_; }
 
  private:
+  void settle_lines();
   void run();
   void wait_until(std::int64_t deadline_us);
   void cycle(std::int64_t deadline_us);

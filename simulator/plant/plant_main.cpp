@@ -39,6 +39,14 @@ volatile std::sig_atomic_t stop_requested = 0;
 void request_stop(int) {
   stop_requested = 1;
 }
+volatile std::sig_atomic_t undock_requested = 0;
+void request_undock(int) {
+  undock_requested = 1;
+}
+volatile std::sig_atomic_t estop_pressed = 0;
+void toggle_estop(int) {
+  estop_pressed = 1 - estop_pressed;
+}
 
 struct Arguments {
   std::string can = "unix:/tmp/ladder_can";
@@ -56,7 +64,10 @@ struct Arguments {
 
 /// Throws CLI::ParseError.
 void parse(int argc, char** argv, Arguments& arguments) {
-  CLI::App app("The robot on its ladder: sixteen drives, claws, rungs, lines.", "ladder_plant");
+  CLI::App app(
+      "The robot on its ladder: sixteen drives, claws, rungs, lines. "
+      "SIGUSR1 releases the dock, SIGUSR2 presses and releases the E-stop.",
+      "ladder_plant");
   bool gripping = false;
   app.add_option("--can", arguments.can, "unix:PATH (served here) or a CAN interface");
   app.add_option("--lines", arguments.lines,
@@ -169,6 +180,7 @@ class RunningPlant {
       for (const auto& hand : lines_->receive()) plant_.set_wire_fault(hand.line, hand.fault);
     }
     player_.apply(now_us, plant_, bus_);
+    obey_hand();
     plant_.advance(now_us);
     hub_.give_out(now_us);
     if (lines_) lines_->publish(plant_.lines());
@@ -180,6 +192,14 @@ class RunningPlant {
       print_due_us_ = now_us + period_us;
       print(now_us);
     }
+  }
+
+  /// What a tester does by signals; a script may do the same at its times.
+  void obey_hand() {
+    if (undock_requested != 0) plant_.set_docked(false);
+    if (estop_pressed == hand_pressed_) return;
+    hand_pressed_ = estop_pressed;
+    plant_.press_estop(hand_pressed_ != 0);
   }
 
   void publish_truth(std::int64_t now_us) {
@@ -238,6 +258,7 @@ class RunningPlant {
   std::optional<runtime::Bus> rungs_bus_;
   std::vector<pollfd> descriptors_;
   std::int64_t last_us_ = 0;
+  int hand_pressed_ = 0;
   std::int64_t print_due_us_ = 0;
   std::int64_t truth_due_us_ = 0;
   std::int64_t truth_seq_ = 0;
@@ -253,6 +274,8 @@ class RunningPlant {
 int main(int argc, char** argv) {
   std::signal(SIGTERM, request_stop);
   std::signal(SIGINT, request_stop);
+  std::signal(SIGUSR1, request_undock);
+  std::signal(SIGUSR2, toggle_estop);
   Arguments arguments;
   try {
     parse(argc, argv, arguments);

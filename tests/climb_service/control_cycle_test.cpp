@@ -35,5 +35,25 @@ TEST(ControlCycle, ClimbsOneRung) {
   EXPECT_EQ(bench.violations(), "");
 }
 
+// An E-stop is latched after its release; the operator's reset ends it, and then it can be armed.
+TEST(ControlCycle, EstopIsLatchedUntilReset) {
+  CycleBench bench;
+  ASSERT_TRUE(bench.reach(ControllerState::kDisarmed));
+  ASSERT_EQ(bench.order(Order::kArm), CommandVerdict::kAccepted);
+  bench.run_s(0.1);
+  bench.plant.press_estop(true);
+  bench.step();
+  EXPECT_EQ(bench.state(), ControllerState::kEstop);
+  EXPECT_EQ(bench.order(Order::kReset), CommandVerdict::kNotNow);
+  bench.run_s(0.1);
+  bench.plant.press_estop(false);
+  bench.run_s(0.5);
+  EXPECT_EQ(bench.state(), ControllerState::kEstop);
+  EXPECT_EQ(bench.order(Order::kReset), CommandVerdict::kAccepted) << bench.problems();
+  EXPECT_EQ(bench.state(), ControllerState::kDisarmed);
+  EXPECT_TRUE(arm(bench)) << bench.problems();
+  EXPECT_EQ(bench.violations(), "");
+}
+
 }  // namespace
 }  // namespace climb_controller
