@@ -192,11 +192,43 @@ void read(ConfigTable table, DriveLayout& p) {
   read(table.table("jaw"), p.jaw);
 }
 
+/// "NAME", or "#5" for the line at offset 5 of a chip that names none.
+void read_line(ConfigTable& table, const char* key, gpio::LineParams& line) {
+  std::string place = line.name;
+  table.read(key, place);
+  if (!place.starts_with('#')) {
+    line.name = place;
+    return;
+  }
+  const bool is_offset = place.size() > 1 && place.size() < 6 &&
+                         place.find_first_not_of("0123456789", 1) == std::string::npos;
+  if (!is_offset) table.fail(key, "is \"" + place + "\"; an offset is written \"#5\"");
+  line.name.clear();
+  line.offset = std::stoi(place.substr(1));
+}
+
+void read_wiring(ConfigTable& table, const std::string& switches, gpio::LineParams& line) {
+  table.read(switches + "_active_low", line.active_low);
+  table.read(switches + "_bias", line.bias,
+             {{"as_is", gpio::Bias::kAsIs},
+              {"disabled", gpio::Bias::kDisabled},
+              {"pull_up", gpio::Bias::kPullUp},
+              {"pull_down", gpio::Bias::kPullDown}});
+}
+
 void read(ConfigTable table, gpio::LinesParams& p) {
   table.read("chip", p.chip);
   const char* const keys[] = {"touch_fl", "touch_fr", "touch_rl", "touch_rr"};
-  for (int i = 0; i < gpio::kNumTouch; ++i) table.read(keys[i], p.touch[i].name);
-  table.read("estop", p.estop.name);
+  gpio::LineParams touch = p.touch[0];
+  read_wiring(table, "touch", touch);
+  for (int i = 0; i < gpio::kNumTouch; ++i) {
+    p.touch[i].active_low = touch.active_low;
+    p.touch[i].bias = touch.bias;
+    read_line(table, keys[i], p.touch[i]);
+  }
+  read_line(table, "estop", p.estop);
+  read_wiring(table, "estop", p.estop);
+  table.read("estop_debounce_us", p.estop.debounce_us);
   table.require(check(p));
 }
 

@@ -6,7 +6,7 @@
 namespace gpio {
 namespace {
 
-constexpr const char* kKeys[kNumLines] = {"touch.fl", "touch.fr", "touch.rl", "touch.rr", "estop"};
+constexpr const char* kKeys[kNumLines] = {"touch_fl", "touch_fr", "touch_rl", "touch_rr", "estop"};
 constexpr std::int64_t kMaxDebounce_us = 10'000;  // and two periods of 10 ms, at most, make 30 ms
 constexpr std::size_t kMaxPath = 107;             // of a unix socket
 
@@ -21,7 +21,7 @@ std::string check_line(const LineParams& line, int index) {
     return key + ": give either its name or its offset (>= 0) on the chip";
   }
   if (!(line.debounce_us >= 0 && line.debounce_us <= kMaxDebounce_us)) {
-    return key + ".debounce_us must be in 0..10000";
+    return key + "_debounce_us must be in 0..10000";
   }
   const bool active_level = !line.active_low;
   if (index == kEstop && breaks_to(line, !active_level)) {

@@ -33,7 +33,7 @@ TEST(LineParams, ABrokenWireMustBeSafe) {
             })),
             "");
   EXPECT_THAT(check(with([](LinesParams& p) { p.touch[2].bias = Bias::kPullUp; })),
-              HasSubstr("touch.rl: a broken wire would read as a grasp"));
+              HasSubstr("touch_rl: a broken wire would read as a grasp"));
   EXPECT_EQ(check(with([](LinesParams& p) {
               p.touch[2].bias = Bias::kPullUp;
               p.touch[2].active_low = true;
@@ -56,14 +56,14 @@ TEST(LineParams, NamesTheField) {
   EXPECT_THAT(check(with([](LinesParams& p) { p.chip = "unix:"; })), HasSubstr("unix:PATH"));
   EXPECT_THAT(check(with([](LinesParams& p) { p.chip = "unix:" + std::string(108, 'x'); })),
               HasSubstr("unix:PATH"));
-  EXPECT_THAT(check(with([](LinesParams& p) { p.touch[0].name = ""; })), HasSubstr("touch.fl"));
-  EXPECT_THAT(check(with([](LinesParams& p) { p.touch[1].offset = 3; })), HasSubstr("touch.fr"));
+  EXPECT_THAT(check(with([](LinesParams& p) { p.touch[0].name = ""; })), HasSubstr("touch_fl"));
+  EXPECT_THAT(check(with([](LinesParams& p) { p.touch[1].offset = 3; })), HasSubstr("touch_fr"));
   EXPECT_THAT(check(with([](LinesParams& p) { p.touch[3].name = "TOUCH_FL"; })),
-              HasSubstr("touch.fl and touch.rr are the same line"));
+              HasSubstr("touch_fl and touch_rr are the same line"));
   EXPECT_THAT(check(with([](LinesParams& p) { p.estop.debounce_us = -1; })),
-              HasSubstr("estop.debounce_us"));
+              HasSubstr("estop_debounce_us"));
   EXPECT_THAT(check(with([](LinesParams& p) { p.estop.debounce_us = 10'001; })),
-              HasSubstr("estop.debounce_us"));
+              HasSubstr("estop_debounce_us"));
   EXPECT_THAT(check(with([](LinesParams& p) { p.first_reopen_us = 0; })),
               HasSubstr("first_reopen_us"));
   EXPECT_THAT(check(with([](LinesParams& p) { p.longest_reopen_us = 1; })),
@@ -77,7 +77,7 @@ TEST(LineParams, Offsets) {
   params.touch[1] = {"", 1};
   EXPECT_EQ(check(params), "");
   params.touch[1].offset = 0;
-  EXPECT_THAT(check(params), HasSubstr("touch.fl and touch.fr"));
+  EXPECT_THAT(check(params), HasSubstr("touch_fl and touch_fr"));
 }
 
 }  // namespace
