@@ -250,7 +250,9 @@ std::string text_of(const DriveReport& report, const DriveCheckParams& params) {
   for (const can::Fault& fault : report.faults) text += "    fault: " + fault_text(fault) + "\n";
   if (report.num_malformed > 0) add("frames not understood", std::to_string(report.num_malformed));
   if (report.reached_rad) {
-    add("asked to move", std::to_string(params.move_rad) + " rad");
+    const double counts = params.move_rad * params.axis.gear * params.axis.counts_per_rad;
+    add("asked to move", std::to_string(params.move_rad) + " rad (" +
+                             std::to_string(std::llround(counts)) + " counts)");
     add("moved", std::to_string(*report.reached_rad - report.start_rad) + " rad");
     add("largest lag", std::to_string(report.max_lag_rad) + " rad");
   }

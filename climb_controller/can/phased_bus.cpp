@@ -16,10 +16,11 @@ std::string check_bus(const BusParams& params) {
   if (params.axes.empty() || params.axes.size() > 32) return "1..32 axes";
   std::set<int> nodes;
   for (const AxisConfig& axis : params.axes) {
-    const std::string node = std::to_string(axis.node_id);
     const std::string problem = check(axis);
-    if (!problem.empty()) return "node " + node + ": " + problem;
-    if (!nodes.insert(axis.node_id).second) return "node_id " + node + " occurs twice";
+    if (!problem.empty()) return "node " + std::to_string(axis.node_id) + ": " + problem;
+    if (!nodes.insert(axis.node_id).second) {
+      return "node_id " + std::to_string(axis.node_id) + " occurs twice";
+    }
   }
   if (params.cycle_us < 1000 || params.listen_us < 0 || params.walk_timeout_us <= 0) {
     return "cycle_us >= 1000, listen_us >= 0, walk_timeout_us > 0";

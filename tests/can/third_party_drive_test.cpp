@@ -61,6 +61,8 @@ TEST(ThirdPartyDrive, SmallDriveMovesOnTheGround) {
   drive.lack(0x1400, 5);
   drive.set_object(0x605E, 0, 2);
   drive.read_only.insert(ScriptedDrive::key(0x605E, 0));
+  drive.set_object(0x608F, 1, 0);
+  drive.set_status_word(0x0000);  // not ready, until it is told anything
   ASSERT_TRUE(rig.bring_to_enabled()) << issues_of(*rig.bus) << rig.fault_names();
   EXPECT_FALSE(rig.bus->capabilities().hold_on_loss);
   EXPECT_FALSE(rig.bus->capabilities().torque_limit);
