@@ -19,6 +19,26 @@ namespace climb_controller {
 
 constexpr std::uint64_t kSession = 0x5E5510;
 
+/// The line to the simulated robot; what it costs is not the controller's.
+class WatchedTransport final : public robot_in_a_box::MemoryTransport {
+ public:
+  using MemoryTransport::MemoryTransport;
+  can::TransferStatus send(const can::CanFrame& frame) override {
+    if (on_enter) on_enter();
+    const can::TransferStatus status = MemoryTransport::send(frame);
+    if (on_leave) on_leave();
+    return status;
+  }
+  can::TransferStatus receive(can::ReceivedFrame& received) override {
+    if (on_enter) on_enter();
+    const can::TransferStatus status = MemoryTransport::receive(received);
+    if (on_leave) on_leave();
+    return status;
+  }
+  std::function<void()> on_enter;
+  std::function<void()> on_leave;
+};
+
 struct CycleBench {
   explicit CycleBench(const simulator::PlantParams& plant_params = {}, CycleParams params = {})
       : plant(plant_params, bus),
@@ -45,7 +65,9 @@ struct CycleBench {
       if (i < 9) cycle.poll(now_us);
     }
     see();
+    if (before_step) before_step();
     cycle.step(now_us, inbox, report);
+    if (after_step) after_step();
     inbox.command = {};
     carried = bus.take_carried();
     for (const simulator::CarriedFrame& frame : carried) monitor.on_frame(frame);
@@ -90,7 +112,7 @@ struct CycleBench {
 
   simulator::MemoryBus bus;
   simulator::RobotPlant plant;
-  robot_in_a_box::MemoryTransport transport;
+  WatchedTransport transport;
   simulator::Monitor monitor;
   can::FlightRecorder recorder;
   can::Cia402Bus master;
@@ -101,6 +123,8 @@ struct CycleBench {
   std::int64_t now_us = 0;
   std::int64_t seq = 0;
   bool sees = true;
+  std::function<void()> before_step;  ///< round ControlCycle::step() alone, for measurements
+  std::function<void()> after_step;
   gpio::Lines* lines = nullptr;  ///< null: the plant's levels, as they are
   std::function<void()> on_millisecond;
   std::vector<simulator::CarriedFrame> carried;  ///< in the last period
