@@ -12,7 +12,7 @@ import real_frames
 from ladder_scripts import depth_heads
 
 CLASSES = {"safe ground": 1, "wall": 2, "obstacle": 3}
-NUM_POINTS = 4000  # of the cloud, evenly spaced
+NUM_POINTS = 2000  # of the cloud, evenly spaced
 
 
 def read_truth():
