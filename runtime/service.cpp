@@ -157,8 +157,8 @@ int run_service(int argc, char** argv, const ServiceDescription& description) {
   for (const Shorthand& shorthand : description.shorthands) {
     app.add_option_function<std::string>(
         shorthand.option,
-        [&arguments, key = shorthand.key](const std::string& value) {
-          arguments.overrides.push_back(key + "=" + value);
+        [&arguments, key = shorthand.key + "="](const std::string& value) {
+          arguments.overrides.push_back(key + value);
         },
         shorthand.help);
   }

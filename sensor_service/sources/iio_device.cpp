@@ -29,7 +29,8 @@ std::string channel_name(std::size_t channel) {
 std::string folder_named(const std::string& root, std::string_view prefix,
                          std::string_view wanted) {
   for (const std::string& name : names_in(root)) {
-    const std::string folder = root + "/" + name;
+    std::string folder = root;
+    folder.append("/").append(name);
     if (name.starts_with(prefix) && read_attribute(folder + "/name") == wanted) return folder;
   }
   return "";
@@ -78,7 +79,8 @@ std::string IioDevice::choose_channels() {
   const std::vector<std::string> names = names_in(elements);
   if (names.empty()) return "has no scan_elements: it cannot be read through a buffer";
   for (const std::string& name : names) {
-    if (name.ends_with("_en")) write_attribute(elements + "/" + name, "0");
+    std::string element = elements;
+    if (name.ends_with("_en")) write_attribute(element.append("/").append(name), "0");
   }
   for (std::size_t channel = 0; channel < kNumChannels; ++channel) {
     const std::string problem = read_channel(channel);
