@@ -24,7 +24,7 @@ ALLOWED = {
     "climb_controller": ["base/", "runtime/", "ladder_msgs/", "climb/", "can/", "gpio/", "climb_controller/"],
     "simulator": ["base/", "runtime/", "ladder_msgs/", "simulator/"],
     "robot_in_a_box": ["base/", "runtime/", "ladder_msgs/", "sensor_service/", "gng_service/", "ladder_service/", "simulator/",
-                       "robot_in_a_box/"],
+                       "climb_controller/", "climb/", "can/", "gpio/", "robot_in_a_box/"],
 }
 PURE = ("sensor_service/tof", "gng_service/ddgng", "ladder_service/ladder", "climb_controller/climb")
 # What an algorithm library may include in brackets besides the C++ standard library.
