@@ -111,6 +111,7 @@ void LimbCycle::enter(LimbState from) {
       return move_foot(goal_.grasp_m + approach_offset_m(), motion_.approach_m_s);
     case S::kClosing:
       if (from == S::kReleasing) stay_home();  // opened a little and closed again
+      if (is_first_try()) spent_s_ = 0.0;
       jaw_goal_rad_ = claw_.closed_rad;
       return;
     case S::kVerify:

@@ -47,7 +47,8 @@ struct LimbParams {
   double close_timeout_s = 2.0;    ///< without touch (contract)
   double open_timeout_s = 1.0;     ///< for a jaw to stand open (own: it takes 0.35)
   double others_timeout_s = 0.5;   ///< for the others to hold before it is released (own)
-  double budget_s = 20.0;          ///< of all tries; then once more for the way back (contract)
+  double budget_s = 20.0;          ///< of all tries, from when the first rung is reached; then once
+                                   ///< more from when it turns back (contract)
   int max_tries = 3;               ///< at the first place: as planned and two more (contract)
   int max_tries_elsewhere = 1;     ///< at each further place: the budget allows no more (own)
   double try_offset_m = 0.010;     ///< along the rung, one to the left, one to the right (contract)
@@ -125,6 +126,7 @@ class LimbCycle {
   bool advance(const LimbInput& input);
   void move_jaw(const LimbInput& input);
   bool is_open(const LimbInput& input) const;
+  bool is_first_try() const { return num_tries_ == 0 && num_places_ == 1 && !returned_; }
   bool is_over_budget() const { return spent_s_ >= params_.budget_s; }
   double path_part() const;
   Eigen::Vector3d approach_offset_m() const;
@@ -148,9 +150,9 @@ class LimbCycle {
   double jaw_goal_rad_ = 0.0;
   double in_state_s_ = 0.0;
   double waited_s_ = 0.0;  ///< for the jaw or the others, in this state
-  double spent_s_ = 0.0;
-  int num_tries_ = 0;   ///< at this place
-  int num_places_ = 1;  ///< in this step
+  double spent_s_ = 0.0;   ///< since it was lifted, came to its rung, or turned back
+  int num_tries_ = 0;      ///< at this place
+  int num_places_ = 1;     ///< in this step
   Stage stage_ = Stage::kOver;
   std::optional<Eigen::Vector3d> way_out_m_;  ///< where the approach began, while it is at a rung
   int held_rung_id_ = -1;

@@ -5,6 +5,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 #include "climb/controller.h"
@@ -13,6 +15,7 @@ namespace climb_tests {
 
 class LadderStand {
  public:
+  static constexpr double kMoves = std::numeric_limits<double>::quiet_NaN();
   static constexpr double kSpacing_m = 0.30;
   static constexpr double kStiffness_Nm_rad = 800.0;
   static constexpr double kLag = 0.25;  ///< of the error per cycle: 35 ms
@@ -51,6 +54,12 @@ class LadderStand {
   }
 
   void break_rung(int id) { broken_.push_back(id); }
+  void mend_rungs() { broken_.clear(); }
+  /// One more rung, numbered on; heights count in rung distances from where rung 0 would be.
+  void add_rung_at(double place) {
+    add_rung(static_cast<int>(rungs.size()) + 1, place);
+    read();
+  }
   /// For one leg only the rung is not there.
   void hide_rung(int id, climb::Leg leg) { hidden_[leg] = id; }
   Eigen::Quaterniond upright() const { return Eigen::Quaterniond(T_odom_body_.linear()); }
@@ -59,17 +68,20 @@ class LadderStand {
   double body_height_m() const { return T_odom_body_.translation().z(); }
 
   climb::ControllerInput input;
+  /// A jaw that moves no more, not even with its rung; NaN = it moves.
+  climb::PerLeg<double> stuck_jaw_rad = {kMoves, kMoves, kMoves, kMoves};
   bool sees = true;
   std::vector<climb::RungView> rungs;
   std::vector<climb::StretchView> stretches;
 
  private:
-  void add_rung(int k) {
+  void add_rung(int k) { add_rung(k, k); }
+  void add_rung(int k, double place) {
     climb::RungView rung;
     rung.id = k;
     rung.trusted = true;
     rung.confidence = 1.0;
-    const double z_m = kSpacing_m * (k - 2);
+    const double z_m = kSpacing_m * (place - 2);
     rung.end0_m = Eigen::Vector3d(params_.motion.stand_off_m, 0.2, z_m);
     rung.end1_m = Eigen::Vector3d(params_.motion.stand_off_m, -0.2, z_m);
     rung.radius_m = 0.014;
@@ -102,9 +114,11 @@ class LadderStand {
         const double wanted_rad = axes[climb::axis_of(leg, joint)].position_rad;
         drive_rad_[leg][joint] += kLag * (wanted_rad - drive_rad_[leg][joint]);
       }
-      const double jaw_goal_rad = axes[climb::axis_of(leg, climb::kJaw)].position_rad;
+      const double jaw_wanted_rad = axes[climb::axis_of(leg, climb::kJaw)].position_rad;
+      const bool is_stuck = std::isfinite(stuck_jaw_rad[leg]);
+      const double jaw_goal_rad = is_stuck ? stuck_jaw_rad[leg] : jaw_wanted_rad;
       const int rung = rung_at(leg);
-      const bool closes = jaw_goal_rad < claw.on_rung_rad;
+      const bool closes = jaw_goal_rad < claw.on_rung_rad + 1e-9;
       if (is_broken(held_rung_[leg]) || !closes) held_rung_[leg] = 0;
       if (closes && rung > 0 && held_rung_[leg] == 0 && jaw_rad_[leg] > claw.on_rung_rad - 0.02) {
         held_rung_[leg] = rung;
@@ -112,7 +126,7 @@ class LadderStand {
       }
       const double stop_rad = held_rung_[leg] > 0 ? claw.on_rung_rad : claw.closed_rad;
       jaw_rad_[leg] = std::max(jaw_goal_rad, stop_rad);
-      jaw_torque_Nm_[leg] = 20.0 * (jaw_goal_rad - jaw_rad_[leg]);
+      jaw_torque_Nm_[leg] = 20.0 * (jaw_wanted_rad - jaw_rad_[leg]);
       if (held_rung_[leg] == 0) continue;
       ++num_held;
       place_m += held_m_[leg] - T_odom_body_.linear() * kinematics_.foot_m(leg, drive_rad_[leg]);
