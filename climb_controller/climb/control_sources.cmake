@@ -5,6 +5,8 @@ set(climb_control_sources
     body_shift.cpp
     controller.cpp
     controller_output.cpp
+    controller_stance.cpp
+    controller_stance.cpp
     controller_work.cpp
     failsafe.cpp
     fault_watch.cpp

@@ -34,10 +34,14 @@ std::string check(const ControllerParams& p) {
   if (!(p.gate.period_s == p.climb.motion.period_s && p.watch.period_s == p.gate.period_s)) {
     return "gate.period_s and watch.period_s must be motion.period_s";
   }
-  const double times_s[] = {p.selftest_s, p.enable_timeout_s, p.dock_timeout_s, p.reset_after_s};
+  if (!(p.max_sag_m > 0.0 && p.max_sag_m <= 1.0)) return "max_sag_m must be above 0, at most 1";
+  if (!(p.torque_ramp_s >= 0.01)) return "torque_ramp_s must be 0.01 or more";
+  const double times_s[] = {p.selftest_s,       p.enable_timeout_s, p.dock_timeout_s,
+                            p.put_down_after_s, p.torque_ramp_s,    p.reset_after_s};
   for (const double time_s : times_s) {
     if (!(time_s >= 0.0 && time_s <= 3600.0)) {
-      return "selftest_s, enable_timeout_s, dock_timeout_s and reset_after_s must be 0..3600";
+      return "selftest_s, enable_timeout_s, dock_timeout_s, put_down_after_s, torque_ramp_s and "
+             "reset_after_s must be 0..3600";
     }
   }
   return "";
@@ -52,6 +56,7 @@ Controller::Controller(const ControllerParams& params)
       shift_(params.climb.robot, params.climb.motion),
       odometry_(params.climb.robot, params.climb.odometry),
       support_(params.climb.robot, params.climb.support),
+      kinematics_(params.climb.robot),
       limbs_(limbs_of(params)) {
   CHECK(check(params).empty(), "parameters must be checked before");
 }
@@ -66,6 +71,8 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) {
   output.command = take_command(input.command);
   update_pose(input);
   work(input);
+  weigh_grips(input);
+  at_dock_ = planner_.is_at_dock(robot_now(input));
   send(input, output);
   output.drives = drive_request(input);
   report(output);
@@ -73,7 +80,6 @@ void Controller::step(const ControllerInput& input, ControllerOutput& output) {
 
 FaultFlags Controller::faults_of(const ControllerInput& input) {
   FaultFlags faults = watch_.look(input, gate_.sent());
-  int num_held = 0;
   for (const Leg leg : kLegs) {
     const LimbCycle& limb = limbs_[leg];
     if (limb.confirmation().is_touch_stuck()) faults |= flag(Fault::kTouchStuck);
@@ -81,10 +87,9 @@ FaultFlags Controller::faults_of(const ControllerInput& input) {
     if (limb.confirmation().disagrees()) faults |= flag(Fault::kGraspDisagrees);
     if (limb.failed()) faults |= flag(Fault::kNoGrasp);
     if (limb.state() == LimbState::kSupportLost) faults |= flag(Fault::kStanceLost);
-    num_held += limb.state() == LimbState::kLoaded ? 1 : 0;
   }
-  const bool few = following_ && hangs_ && params_.on_ladder && num_held < 3;
-  if (few) faults |= flag(Fault::kTooFewGrasps);
+  if (lacks_grasps()) faults |= flag(Fault::kTooFewGrasps);
+  if (is_stuck_) faults |= flag(Fault::kTracking);
   const bool dropped_out = following_ && !input.drives_enabled && state_ != S::kDisarming;
   if (dropped_out) faults |= flag(Fault::kServoState);
   if (unsafe_) faults |= flag(Fault::kUnsafeCommand);
@@ -172,7 +177,19 @@ bool Controller::obey_reset() {
   if (!is_cleared) return false;
   // Without power nothing is latched here, but a reset has brought the bus back.
   if (group_of(state_) == StateGroup::kUnpowered) return true;
+  if (putting_down_) return false;
   return in_state_s_ >= params_.reset_after_s && take(E::kReset);
+}
+
+bool Controller::obey_disarm() {
+  // Ordered at the dock's place it is the word that the dock is there; that is tried first.
+  const bool parks = hangs_ && at_dock_;
+  if (hangs_ && !parks && !params_.power_off_holds) return false;
+  if (!take(E::kDisarm)) return false;
+  parking_ = parks;
+  parked_.reset();
+  T_odom_body_before_ = odometry_.estimate().T_odom_body();
+  return true;
 }
 
 bool Controller::obey(Order order) {
@@ -192,7 +209,7 @@ bool Controller::obey(Order order) {
       return obey_reset();
     case Order::kDisarm:
       if (state_ == S::kArming) return take(E::kArmingRefused);
-      return (!hangs_ || params_.power_off_holds) && take(E::kDisarm);
+      return obey_disarm();
   }
   return false;
 }
@@ -211,7 +228,10 @@ bool Controller::take(ControllerEvent event) {
     num_shifts_ = 0;
     stepping_ = false;
     unsafe_ = false;
+    putting_down_.reset();
+    put_down_vain_ = false;
   }
+  if (state_ != S::kDisarming) parking_ = is_stuck_ = false;
   return true;
 }
 

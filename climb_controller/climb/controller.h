@@ -27,6 +27,9 @@ struct ControllerParams {
   double enable_timeout_s = 5.0;
   double dock_timeout_s = 120.0;  ///< for four claws to grasp in the dock
   int max_shifts = 2;             ///< of the body before one step
+  double put_down_after_s = 0.2;  ///< frozen so long, then the limb in the air is put down
+  double torque_ramp_s = 0.5;     ///< of the feed-forward, when the dock lets go or takes over
+  double max_sag_m = 0.004;       ///< of the body in the dock, without feed-forward
   double reset_after_s = 0.3;     ///< no reset before everything stands
 };
 
@@ -55,6 +58,7 @@ class Controller {
   bool obey_climb(bool upwards);
   bool obey_hold();
   bool obey_reset();
+  bool obey_disarm();
   bool take(ControllerEvent event);
 
   // controller_work.cpp: what each state does
@@ -71,6 +75,13 @@ class Controller {
   bool must_stop(Leg leg) const;
   bool is_stance_firm() const;
 
+  // controller_stance.cpp: a stance lost, and the claws opened in the dock
+  bool lacks_grasps() const;
+  bool may_put_down() const;
+  void work_put_down(const ControllerInput& input);
+  void work_disarming(const ControllerInput& input);
+  bool has_sagged() const;
+
   // controller_output.cpp: what it knows, and what it says
   LimbInput limb_input(const ControllerInput& input, Leg leg) const;
   LadderView ladder_of(const ControllerInput& input) const;
@@ -79,7 +90,8 @@ class Controller {
   std::optional<Leg> moving_leg() const;
   bool is_under_way() const { return moving_leg().has_value() || shift_.active(); }
   void send(const ControllerInput& input, ControllerOutput& output);
-  void add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted) const;
+  void add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted);
+  void weigh_grips(const ControllerInput& input);
   DriveRequest drive_request(const ControllerInput& input) const;
   void report(ControllerOutput& output) const;
 
@@ -91,6 +103,7 @@ class Controller {
   BodyShift shift_;
   Odometry odometry_;
   Support support_;
+  LegKinematics kinematics_;
   std::array<LimbCycle, kNumLegs> limbs_;
 
   ControllerState state_ = ControllerState::kBoot;
@@ -109,6 +122,15 @@ class Controller {
   bool following_ = false;     ///< targets are sent
   bool began_now_ = false;     ///< to follow, in this cycle: the first targets are as measured
   bool rests_safely_ = false;
+  Eigen::Isometry3d T_odom_body_before_ = Eigen::Isometry3d::Identity();  ///< lifting or opening
+  std::optional<Leg> putting_down_;  ///< in FAULT_HOLD, after a stance was lost
+  bool put_down_vain_ = false;       ///< nowhere to put it
+  bool parking_ = false;             ///< the claws are opened in the dock
+  std::optional<Leg> parked_;        ///< the claw opened last
+  bool is_stuck_ = false;            ///< ... and it did not open
+  bool at_dock_ = false;
+  double torque_part_ = 0.0;  ///< of the feed-forward
+  PerLeg<double> grip_N_{};
   bool unsafe_ = false;  ///< the gate refused our own command
   Eigen::Quaterniond q_odom_body_ = Eigen::Quaterniond::Identity();  ///< last sound one
   PlannedStep plan_;

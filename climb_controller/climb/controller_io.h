@@ -66,7 +66,12 @@ struct ControllerOutput {
   PerLeg<int> rung_ids{};
   bool body_shift = false;
   bool at_top = false;
-  bool rests_safely = false;         ///< at the last HOLD: any one rung may break without a fall
+  bool at_dock = false;       ///< all claws where they held in the dock
+  bool rests_safely = false;  ///< at the last HOLD: any one rung may break without a fall
+  bool putting_down = false;  ///< FAULT_HOLD: a stance is lost, the limb in the air is put down
+  bool fall_alarm = false;    ///< fewer than three claws hold, and none is being put down
+  PerLeg<double> grip_N{};    ///< force of each loaded claw across its rung, by joint torques
+  bool grip_alarm = false;    ///< one of them above grip_alarm_N; nothing else follows from it
   Refusal refusal = Refusal::kNone;  ///< why no grasp was chosen
   Burden burden = Burden::kBorne;    ///< why a limb may not be lifted
   OdometryEstimate pose;

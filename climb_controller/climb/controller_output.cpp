@@ -2,6 +2,9 @@
 // The controller around its decisions: what it knows of the robot, targets through the gate,
 // requests, report.
 #include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
 
 #include "climb/controller.h"
 
@@ -68,6 +71,18 @@ std::optional<Leg> Controller::moving_leg() const {
   return std::nullopt;
 }
 
+void Controller::weigh_grips(const ControllerInput& input) {
+  for (const Leg leg : kLegs) {
+    grip_N_[leg] = 0.0;
+    if (!is_confirmed(limbs_[leg].state())) continue;
+    const LimbInput limb = limb_input(input, leg);
+    // tau = -J^T f; a rung lies along the body's y.
+    const Eigen::Matrix3d J = kinematics_.jacobian(leg, limb.angles_rad);
+    const Eigen::Vector3d force_N = -(J.transpose().inverse() * limb.torques_Nm);
+    grip_N_[leg] = std::hypot(force_N.x(), force_N.z());
+  }
+}
+
 void Controller::send(const ControllerInput& input, ControllerOutput& output) {
   output.send = following_ && !action_.silent && gate_.started();
   if (!output.send) return;
@@ -87,8 +102,10 @@ void Controller::send(const ControllerInput& input, ControllerOutput& output) {
   output.axes = gate_.sent();
 }
 
-void Controller::add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted) const {
-  // In the dock the stand bears the weight.
+void Controller::add_torques(const ControllerInput& input, PerAxis<AxisCommand>& wanted) {
+  // In the dock the stand bears the weight: it lets go, and takes over, little by little.
+  const double part = params_.gate.period_s / params_.torque_ramp_s;
+  torque_part_ = std::clamp(torque_part_ + (hangs_ && !parking_ ? part : -part), 0.0, 1.0);
   if (!hangs_) return;
   const Stance stance = robot_now(input).stance;
   const PerLeg<LegAngles> torques_Nm = support_.torques_Nm(stance, support_.distribute(stance));
@@ -96,7 +113,7 @@ void Controller::add_torques(const ControllerInput& input, PerAxis<AxisCommand>&
     for (int joint = 0; joint < kNumLegJoints; ++joint) {
       const int axis = axis_of(leg, joint);
       const double most_Nm = limits_[axis].max_torque_Nm;
-      wanted[axis].torque_Nm = std::clamp(torques_Nm[leg][joint], -most_Nm, most_Nm);
+      wanted[axis].torque_Nm = std::clamp(torque_part_ * torques_Nm[leg][joint], -most_Nm, most_Nm);
     }
   }
 }
@@ -108,7 +125,7 @@ DriveRequest Controller::drive_request(const ControllerInput& input) const {
     case S::kEstop:
       return DriveRequest::kQuickStop;
     case S::kDisarming:
-      return DriveRequest::kDisable;
+      return parking_ ? DriveRequest::kNone : DriveRequest::kDisable;
     case S::kDisarmed:
       return input.drives_enabled ? DriveRequest::kHold : DriveRequest::kNone;
     case S::kBoot:
@@ -133,6 +150,14 @@ void Controller::report(ControllerOutput& output) const {
   }
   output.body_shift = shift_.active();
   output.at_top = plan_.at_top;
+  output.at_dock = at_dock_;
+  output.putting_down = putting_down_.has_value();
+  output.fall_alarm = lacks_grasps();
+  output.grip_N = grip_N_;
+  output.grip_alarm = false;
+  for (const double grip_N : grip_N_) {
+    if (!(grip_N <= params_.climb.support.grip_alarm_N)) output.grip_alarm = true;
+  }
   output.rests_safely = rests_safely_;
   output.refusal = plan_.ready ? Refusal::kNone : plan_.refusal;
   output.burden = plan_.burden;

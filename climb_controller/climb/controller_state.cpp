@@ -46,6 +46,7 @@ constexpr ControllerTransition kTransitions[] = {
     {S::kEstop, E::kReset, S::kDisarmed},
     {S::kHold, E::kDisarm, S::kDisarming},
     {S::kDisarming, E::kDisarmed, S::kDisarmed},
+    {S::kDisarming, E::kHold, S::kHold},  // the dock does not carry it: no claw was opened
 };
 
 }  // namespace

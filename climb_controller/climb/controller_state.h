@@ -21,7 +21,7 @@ enum class ControllerState : std::uint8_t {
   kProtectiveHold,  ///< goes on by itself when the cause is gone
   kFaultHold,       ///< latched, torque on
   kEstop,           ///< latched, quick stop
-  kDisarming
+  kDisarming        ///< in the dock the claws are opened, then the drives are switched off
 };
 inline constexpr int kNumControllerStates = static_cast<int>(ControllerState::kDisarming) + 1;
 
@@ -35,7 +35,7 @@ enum class ControllerEvent : std::uint8_t {
   kArmingRefused,
   kClimb,  ///< operator
   kPause,  ///< operator
-  kHold,   ///< operator, or the goal is reached, or no way on
+  kHold,   ///< operator, or the goal is reached, or no way on, or no dock to disarm in
   kProtect,
   kRecovered,
   kFault,

@@ -7,14 +7,20 @@ namespace climb {
 using S = ControllerState;
 using E = ControllerEvent;
 
+namespace {
+
+constexpr FaultFlags kFalls = flag(Fault::kFreeFall) | flag(Fault::kTooFewGrasps);
+
+}  // namespace
+
 void Controller::work(const ControllerInput& input) {
   if (following_ && !input.drives_enabled) following_ = false;  // the drives hold by themselves
   boot(input);
   if (state_ == S::kArming) work_arming(input);
   if (state_ == S::kClimbing) work_climbing(input);
+  if (state_ == S::kFaultHold) work_put_down(input);
+  if (state_ == S::kDisarming) work_disarming(input);
   move(input);
-  const bool is_down = !input.drives_enabled && in_state_s_ > params_.gate.period_s;
-  if (state_ == S::kDisarming && is_down) take(E::kDisarmed);
 }
 
 void Controller::boot(const ControllerInput& input) {
@@ -36,13 +42,14 @@ void Controller::work_arming(const ControllerInput& input) {
   if (const std::optional<Leg> leg = moving_leg()) return search(*leg, input);
   for (const Leg leg : kLegs) {
     if (limbs_[leg].state() == LimbState::kLoaded) continue;
-    plan_ = planner_.dock(leg, robot_now(input), ladder_of(input));
+    plan_ = planner_.dock(leg, limbs_[leg].lost_rung_id(), robot_now(input), ladder_of(input));
     if (plan_.ready)
       limbs_[leg].begin(plan_.goal);
     else if (in_state_s_ > params_.dock_timeout_s)
       take(E::kArmingRefused);
     return;
   }
+  if (!hangs_) planner_.remember_dock(robot_now(input));
   hangs_ = true;
   take(E::kArmed);
 }
@@ -66,6 +73,7 @@ void Controller::start_following(const ControllerInput& input) {
   }
   watch_.arm(input);
   hangs_ = num_held >= 3;  // on the ladder again, not in the dock
+  torque_part_ = hangs_ ? 1.0 : 0.0;
   following_ = began_now_ = true;
 }
 
@@ -81,14 +89,17 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) {
     const bool may_shift = num_shifts_ < params_.max_shifts;
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
-    ends = !plan_.ready;
+    ends = !plan_.ready && !plan_.at_dock;
   }
   if (!ends && plan_.shift_m.norm() > 0.0) {
     PerLeg<LegAngles> from_rad;
     for (const Leg leg : kLegs) from_rad[leg] = limbs_[leg].target().angles_rad;
     ++num_shifts_;
     ends = !shift_.begin(from_rad, plan_.shift_m);
+  } else if (!ends && plan_.at_dock) {
+    ends = true;
   } else if (!ends && is_stance_firm() && limbs_[plan_.leg].begin(plan_.goal)) {
+    T_odom_body_before_ = now.pose.T_odom_body();
     stepping_ = true;
     withdrawn_ = false;
   }
@@ -161,7 +172,9 @@ void Controller::watch_target(Leg leg, const ControllerInput& input) {
 
 bool Controller::must_stop(Leg leg) const {
   if (began_now_) return true;  // invariant 6: the first targets are the measured positions
-  if (state_ == S::kClimbing || state_ == S::kArming) {
+  if (putting_down_ == leg) return false;
+  const bool parks = state_ == S::kDisarming && parking_;
+  if (state_ == S::kClimbing || state_ == S::kArming || parks) {
     // The others do not go on when one of three is lost.
     return action_.reaction >= Reaction::kFaultHold;
   }
@@ -179,8 +192,11 @@ void Controller::move(const ControllerInput& input) {
     for (const Leg leg : kLegs) limbs_[leg].follow(shift_.of(leg), shift_.rate());
   }
   for (const Leg leg : kLegs) {
-    if (action_.close_claws && following_) limbs_[leg].close_jaw();
+    // Who holds tightens its grip; who is in the air closes only when it falls.
+    const bool is_to_grip = !limbs_[leg].moves() || (faults_ & kFalls) != 0;
+    if (action_.close_claws && following_ && is_to_grip) limbs_[leg].close_jaw();
     LimbInput limb = limb_input(input, leg);
+    limb.others_hold = limb.others_hold || parking_;  // in the dock
     limb.stop = !following_ || must_stop(leg);
     limbs_[leg].step(limb);
   }

@@ -265,9 +265,9 @@ void LimbCycle::give_up() {
 void LimbCycle::put_down(const LimbGoal& goal) {
   is_jaw_forced_ = false;
   spent_s_ = 0.0;
-  const bool is_at_rung = state_ == S::kApproach || state_ == S::kClosing || state_ == S::kVerify ||
-                          state_ == S::kLoading;
-  if (!moves_ || is_at_rung) return;
+  const bool is_coming = state_ == S::kApproach && goal.rung_id == goal_.rung_id;
+  const bool is_at_rung = state_ == S::kClosing || state_ == S::kVerify || state_ == S::kLoading;
+  if (!moves_ || is_coming || is_at_rung) return;
   const bool is_on_its_rung = state_ == S::kUnloading || state_ == S::kReleasing;
   if (!is_on_its_rung) home_ = goal;
   returned_ = false;

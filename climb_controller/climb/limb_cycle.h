@@ -80,7 +80,8 @@ class LimbCycle {
   void retarget(const LimbGoal& goal);
   void give_up();  ///< back to the old rung, if there is one
 
-  /// From the air down to `goal`, whatever was planned. A limb at a rung goes on with that.
+  /// From the air down to `goal`, whatever was planned. A limb at a rung goes on with that, one
+  /// that is not off its old rung yet closes again.
   void put_down(const LimbGoal& goal);
 
   /// One cycle; target() is new afterwards.

@@ -36,11 +36,20 @@ StepPlanner::StepPlanner(const ClimbParams& params)
       support_(params.robot, params.support),
       choice_(params) {}
 
-PlannedStep StepPlanner::dock(Leg leg, const RobotNow& now, const LadderView& ladder) {
-  GraspQuery query;
-  query.leg = leg;
-  query.T_odom_body = now.pose.T_odom_body();
+PlannedStep StepPlanner::dock(Leg leg, int avoid_rung_id, const RobotNow& now,
+                              const LadderView& ladder) {
+  GraspQuery query = query_of(leg, true, now);
+  for (const Leg other : kLegs) query.held[other].holds = is_confirmed(now.limbs[other]);
+  query.avoid_rung_id = avoid_rung_id;
+  const Eigen::Vector3d here_m = query.from_m;
   query.from_m = docked_from_m(leg, now);
+  const PlannedStep before_it = choose(query, now, ladder);
+  if (before_it.ready || avoid_rung_id < 0) return before_it;
+  // The rung that it was on gave way: the next one above it, or below.
+  query.from_m = here_m;
+  const PlannedStep above = choose(query, now, ladder);
+  if (above.ready) return above;
+  query.upwards = false;
   return choose(query, now, ladder);
 }
 
@@ -48,6 +57,44 @@ Eigen::Vector3d StepPlanner::docked_from_m(Leg leg, const RobotNow& now) const {
   const Eigen::Vector3d below_m(-kLookFromBelow_m, 0.0, 0.0);
   const Eigen::Vector3d foot_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
   return now.pose.T_odom_body() * Eigen::Vector3d(foot_m + below_m);
+}
+
+void StepPlanner::remember_dock(const RobotNow& now) {
+  const Eigen::Isometry3d T_odom_body = now.pose.T_odom_body();
+  dock_feet_m_.emplace();
+  for (const Leg leg : kLegs) {
+    (*dock_feet_m_)[leg] = T_odom_body * kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+  }
+}
+
+bool StepPlanner::is_at_dock(const RobotNow& now) const {
+  if (!dock_feet_m_) return false;
+  const Eigen::Isometry3d T_odom_body = now.pose.T_odom_body();
+  for (const Leg leg : kLegs) {
+    const Eigen::Vector3d foot_m =
+        T_odom_body * kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+    const double off_m = (foot_m - (*dock_feet_m_)[leg]).norm();
+    if (!is_confirmed(now.limbs[leg]) || !(off_m <= params_.grasp.same_rung_m)) return false;
+  }
+  return true;
+}
+
+std::optional<LimbGoal> StepPlanner::put_down(Leg leg, const RobotNow& now,
+                                              std::span<const LimbGoal> places) const {
+  const Eigen::Vector3d foot_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+  std::optional<LimbGoal> nearest;
+  for (const LimbGoal& place : places) {
+    const LegSolution solution = kinematics_.inverse(leg, place.grasp_m);
+    if (!solution.reachable()) continue;
+    Stance stance = now.stance;
+    stance.angles_rad[leg] = solution.angles_rad;
+    stance.contacts[leg].weight = 1.0;
+    if (!(support_.check(stance).margin >= 1.0)) continue;
+    const bool is_nearer =
+        !nearest || (place.grasp_m - foot_m).norm() < (nearest->grasp_m - foot_m).norm();
+    if (is_nearer) nearest = place;
+  }
+  return nearest;
 }
 
 bool StepPlanner::offers(int rung_id, const Eigen::Vector3d& place_m,
@@ -70,17 +117,20 @@ bool StepPlanner::offers(int rung_id, const Eigen::Vector3d& place_m,
 bool StepPlanner::rests_safely(const RobotNow& now) const {
   Stance stance = now.stance;
   PerLeg<double> along_m;
+  PerLeg<int> rung_ids;
   for (const Leg leg : kLegs) {
     if (!is_confirmed(now.limbs[leg])) return false;
     along_m[leg] = kinematics_.foot_m(leg, stance.angles_rad[leg]).x();
     // Feet of the same height share a rung, whatever number perception gave it.
-    stance.contacts[leg].rung_id = leg;
+    rung_ids[leg] = leg;
     for (int other = 0; other < leg; ++other) {
       const bool same = std::abs(along_m[leg] - along_m[other]) <= params_.grasp.same_rung_m;
-      if (same) stance.contacts[leg].rung_id = stance.contacts[other].rung_id;
+      if (same) rung_ids[leg] = rung_ids[other];
     }
+    stance.contacts[leg].rung_id = rung_ids[leg];
   }
-  return support_.check_rung_loss(stance).survives;
+  // Both rear claws on one rung would survive its loss, but with a drop of 70 mm (run).
+  return is_staggered(rung_ids) && support_.check_rung_loss(stance).survives;
 }
 
 PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
@@ -94,16 +144,21 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
   for (const Leg leg : kLegs) {
     if (!is_confirmed(now.limbs[leg])) return step;  // invariant 1: the three others hold
   }
+  if (!upwards && is_at_dock(now)) {
+    step.at_dock = true;
+    if (may_shift) step.shift_m = shift_m(0.0, now);
+    return step;
+  }
   const SupportVerdict verdict = support_.check_without(now.stance, step.leg);
   if (!(verdict.margin >= params_.support.min_margin)) {
     step.burden = verdict.burden == Burden::kBorne ? Burden::kGrip : verdict.burden;
     return step;
   }
   GraspQuery query = query_of(step.leg, upwards, now);
-  const Eigen::Vector3d ahead(body_shift_m(spacing_m(ladder), upwards), 0.0, 0.0);
-  query.next_shift_m = query.T_odom_body.linear() * ahead;
+  const double ahead_m = body_shift_m(spacing_m(ladder), upwards);
+  query.next_shift_m = ahead_m * query.T_odom_body.linear().col(0);
   Eigen::Vector3d first_m = Eigen::Vector3d::Zero();
-  if (may_shift) first_m = shift_m(upwards, now, ladder);
+  if (may_shift) first_m = shift_m(ahead_m, now);
   query.T_odom_body.pretranslate(query.T_odom_body.linear() * first_m);
   PlannedStep chosen = choose(query, now, ladder);
   chosen.shift_m = first_m;
@@ -139,8 +194,7 @@ GraspQuery StepPlanner::query_of(Leg leg, bool upwards, const RobotNow& now) con
   return query;
 }
 
-Eigen::Vector3d StepPlanner::shift_m(bool upwards, const RobotNow& now,
-                                     const LadderView& ladder) const {
+Eigen::Vector3d StepPlanner::shift_m(double ahead_m, const RobotNow& now) const {
   // Before a step the body is a quarter of the rungs' distance ahead of the middle of its feet.
   // Told from the feet, not summed up: whatever was interrupted or sagged is made good.
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
@@ -148,14 +202,16 @@ Eigen::Vector3d StepPlanner::shift_m(bool upwards, const RobotNow& now,
     middle_m += 0.25 * kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
   }
   const double off_m = middle_m.z() + params_.motion.stand_off_m;
-  const Eigen::Vector3d shift_m(middle_m.x() + body_shift_m(spacing_m(ladder), upwards),
+  const Eigen::Vector3d shift_m(middle_m.x() + ahead_m,
                                 std::clamp(middle_m.y(), -kMaxSideways_m, kMaxSideways_m),
                                 std::clamp(off_m, -kMaxSideways_m, kMaxSideways_m));
   return shift_m.norm() > kInPlace_m ? shift_m : Eigen::Vector3d(0.0, 0.0, 0.0);
 }
 
 PlannedStep StepPlanner::choose(GraspQuery query, const RobotNow& now, const LadderView& ladder) {
-  query.body_sigma_m = now.pose.position_sigma_m;
+  // Rungs are seen from this body, just now: what its odometry has lost since the start is theirs
+  // too.
+  query.body_sigma_m = std::min(now.pose.position_sigma_m, params_.odometry.anchor_sigma_m);
   const GraspDecision decision = choice_.choose(ladder, query);
   PlannedStep step;
   step.leg = query.leg;

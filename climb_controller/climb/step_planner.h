@@ -12,6 +12,7 @@ struct PlannedStep {
   Leg leg = kRearRight;
   bool ready = false;                ///< goal (and shift) are set
   bool at_top = false;               ///< both front claws hold the highest trusted rung
+  bool at_dock = false;              ///< on the way down: all claws where they were in the dock
   Refusal refusal = Refusal::kNone;  ///< when not ready
   Burden burden = Burden::kBorne;    ///< when not ready and nothing is refused
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();  ///< of the body, body frame, before the step
@@ -39,8 +40,8 @@ class StepPlanner {
  public:
   explicit StepPlanner(const ClimbParams& params);
 
-  /// A free limb to the rung nearest before it.
-  PlannedStep dock(Leg leg, const RobotNow& now, const LadderView& ladder);
+  /// A free limb to the rung nearest before it; not to one that gave way under it (-1 = none did).
+  PlannedStep dock(Leg leg, int avoid_rung_id, const RobotNow& now, const LadderView& ladder);
 
   /// The next step of the crawl, with the body shift that it wants first (zero: it is in place).
   /// may_shift false: from where the body is.
@@ -50,10 +51,19 @@ class StepPlanner {
   /// one.
   PlannedStep again(const Retry& retry, const RobotNow& now, const LadderView& ladder);
 
+  /// Where the claws held in the dock, odom.
+  void remember_dock(const RobotNow& now);
+  bool is_at_dock(const RobotNow& now) const;
+
+  /// The nearest of `places` (body frame) that carries the robot once this limb in the air holds it
+  /// too, beside the claws that still do; none = none does.
+  std::optional<LimbGoal> put_down(Leg leg, const RobotNow& now,
+                                   std::span<const LimbGoal> places) const;
+
   /// Does the ladder still offer this place (odom) on that rung?
   bool offers(int rung_id, const Eigen::Vector3d& place_m, const LadderView& ladder) const;
 
-  /// All four claws hold, and any one rung may break without a fall.
+  /// Four claws on four rungs, any one of which may break without a fall.
   bool rests_safely(const RobotNow& now) const;
 
   /// From where a claw in the dock looks upwards for its first rung, odom.
@@ -68,7 +78,7 @@ class StepPlanner {
  private:
   Leg next_leg_of(bool upwards) const;
   GraspQuery query_of(Leg leg, bool upwards, const RobotNow& now) const;
-  Eigen::Vector3d shift_m(bool upwards, const RobotNow& now, const LadderView& ladder) const;
+  Eigen::Vector3d shift_m(double ahead_m, const RobotNow& now) const;
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;
@@ -79,6 +89,7 @@ class StepPlanner {
   GraspChoice choice_;
   Leg last_leg_ = kFrontLeft;
   bool last_upwards_ = true;
+  std::optional<PerLeg<Eigen::Vector3d>> dock_feet_m_;
 };
 
 }  // namespace climb

@@ -192,7 +192,9 @@ TEST_F(ControllerTest, LatchesNoGrasp) {
 
 // Hanging, it is disarmed only where something else than torque holds it.
 TEST_F(ControllerTest, KeepsTorqueWhileItHangs) {
-  ASSERT_TRUE(arm()) << where();
+  climb_to(LimbState::kTransit);
+  order(Order::kHold);
+  ASSERT_TRUE(reach(S::kHold, 60.0)) << where();
   order(Order::kDisarm);
   EXPECT_EQ(output_.command, CommandVerdict::kNotNow);
   EXPECT_EQ(output_.state, S::kHold);
@@ -203,6 +205,10 @@ TEST_F(ControllerTest, KeepsTorqueWhileItHangs) {
   stand_ = climb_tests::LadderStand(params().climb);
   output_ = ControllerOutput();
   ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  run(5.0);
+  order(Order::kHold);
+  ASSERT_TRUE(reach(S::kHold, 60.0)) << where();
   order(Order::kDisarm);
   EXPECT_EQ(output_.state, S::kDisarming);
   ASSERT_TRUE(reach(S::kDisarmed, 1.0)) << where();

@@ -54,6 +54,11 @@ class LadderStand {
   }
 
   void break_rung(int id) { broken_.push_back(id); }
+  /// A claw loses its rung, which is still there for the others.
+  void drop(climb::Leg leg) {
+    hidden_[leg] = held_rung_[leg];
+    held_rung_[leg] = 0;
+  }
   void mend_rungs() { broken_.clear(); }
   /// One more rung, numbered on; heights count in rung distances from where rung 0 would be.
   void add_rung_at(double place) {
@@ -68,6 +73,7 @@ class LadderStand {
   double body_height_m() const { return T_odom_body_.translation().z(); }
 
   climb::ControllerInput input;
+  bool sags = false;  ///< without feed-forward, as when no dock is there
   /// A jaw that moves no more, not even with its rung; NaN = it moves.
   climb::PerLeg<double> stuck_jaw_rad = {kMoves, kMoves, kMoves, kMoves};
   bool sees = true;
@@ -134,6 +140,9 @@ class LadderStand {
     // The stand holds the body until all four claws hold for the first time.
     hangs_ = hangs_ || num_held == climb::kNumLegs;
     if (hangs_ && num_held >= 2) T_odom_body_.translation() = place_m / num_held;
+    double torque_Nm = 0.0;
+    for (const climb::AxisCommand& axis : axes) torque_Nm += std::abs(axis.torque_Nm);
+    if (hangs_ && sags && torque_Nm < 0.5) T_odom_body_.translation().z() -= 0.008;
   }
 
   void read() {
