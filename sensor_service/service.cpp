@@ -28,7 +28,8 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
  public:
   explicit SensorService(runtime::ServiceContext context)
       : context_(context),
-        sources_(sources::make_device_sources(read_source_params(context.config), ready_)),
+        devices_(read_source_params(context.config)),
+        sources_(sources::make_device_sources(devices_, ready_)),
         owns_devices_(!sources_.empty()),
         poses_(context.bus.queue(channels::kPose, kMaxWaitingPoses)),
         fusion_(read_params(context.config)) {
@@ -108,7 +109,10 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
     for (int head = 0; head < tof::kNumHeads; ++head) {
       const tof::HeadState state = fusion_.head_state(head);
       states[head] = static_cast<std::int8_t>(state);
-      any_dead = any_dead || state == tof::HeadState::kDead;
+      // A head of our own that never delivered is as bad as one that fell silent.
+      const bool is_awaited = owns_devices_ && !devices_.heads[head].device.empty();
+      any_dead = any_dead || state == tof::HeadState::kDead ||
+                 (is_awaited && state == tof::HeadState::kUnknown);
       if (state == told_[head]) continue;
       if (state == tof::HeadState::kDead) {
         context_.journal.warning("head " + std::to_string(head) +
@@ -124,6 +128,7 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
   }
 
   runtime::ServiceContext context_;
+  sources::SourceParams devices_;
   sources::ReadySet ready_;
   std::vector<std::unique_ptr<sources::FrameSource>> sources_;
   bool owns_devices_;  ///< and publishes what they deliver; else all comes over LCM

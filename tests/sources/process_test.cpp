@@ -37,17 +37,23 @@ class DeviceService : public ::testing::Test {
     imu_ = std::make_unique<FakeIio>(root_);
     imu_->set("in_accel_scale", "0.000981");
     imu_->set("in_anglvel_scale", "0.001");
+    start({});
+  }
+
+  void start(const std::vector<std::string>& more_settings) {
+    std::vector<std::string> settings{
+        "sensor.head_0.device=" + link_,  "sensor.a010.binning=4",
+        "sensor.head_0.fx_px=18",         "sensor.head_0.fy_px=18",
+        "sensor.head_0.cx_px=12",         "sensor.head_0.cy_px=12",
+        "sensor.imu.device=name:mpu6050", "sensor.imu.sysfs=" + imu_->sysfs(),
+        "sensor.imu.dev=" + imu_->dev()};
+    settings.insert(settings.end(), more_settings.begin(), more_settings.end());
     std::vector<std::string> arguments{"--source", "a010", "--url", url_};
-    for (const std::string& setting :
-         {"sensor.head_0.device=" + link_, std::string("sensor.a010.binning=4"),
-          std::string("sensor.head_0.fx_px=18"), std::string("sensor.head_0.fy_px=18"),
-          std::string("sensor.head_0.cx_px=12"), std::string("sensor.head_0.cy_px=12"),
-          std::string("sensor.imu.device=name:mpu6050"), "sensor.imu.sysfs=" + imu_->sysfs(),
-          "sensor.imu.dev=" + imu_->dev()}) {
+    for (const std::string& setting : settings)
       arguments.insert(arguments.end(), {"--set", setting});
-    }
     service_ = std::make_unique<ChildProcess>(kProgram, arguments);
   }
+
   ~DeviceService() override {
     imu_.reset();
     std::filesystem::remove_all(root_);
@@ -140,6 +146,16 @@ TEST_F(DeviceService, DevicesGoAndComeBack) {
   ASSERT_TRUE(run_until([&] {
     return num_clouds_ >= num_clouds + 3 && num_samples_ >= num_samples + 10;
   })) << service_->output();
+}
+
+// One of two heads is not there from the start: clouds come from the other, health says degraded.
+TEST_F(DeviceService, MissingHeadIsDegraded) {
+  service_.reset();
+  start({"sensor.head_1.device=/no/such/line", "sensor.head_1.fx_px=18", "sensor.head_1.fy_px=18"});
+  ASSERT_TRUE(run_until([&] {
+    return num_clouds_ >= 3 && health_state_ == health_t::STATE_DEGRADED;
+  })) << service_->output();
+  EXPECT_THAT(service_->output(), HasSubstr("head 1 (/no/such/line) cannot be opened"));
 }
 
 // A device source without a device, or with a head nobody calibrated, ends with 2 and names the
