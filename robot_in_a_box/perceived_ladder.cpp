@@ -30,8 +30,9 @@ bool PerceivedLadder::update(std::int64_t now_us, const simulator::RobotPlant& p
   stretches_.clear();
   const double body_m = plant.T_world_body().translation().z();
   for (std::size_t i = 0; i < rungs.size(); ++i) {
+    const double above_m = rungs[i].end0_m.z() - body_m;
     const bool is_seen =
-        !rungs[i].broken && std::fabs(rungs[i].end0_m.z() - body_m) <= params_.range_m;
+        !rungs[i].broken && above_m >= seen_from_m && std::fabs(above_m) <= params_.range_m;
     if (is_seen) tell(static_cast<int>(i), rungs[i]);
   }
   received_us_ = now_us;
@@ -48,10 +49,6 @@ void PerceivedLadder::tell(int index, const simulator::LadderRung& rung) {
   told.confidence = 1.0;
   told.end0_m = rung.end1_m + error_m;  // the left end first
   told.end1_m = rung.end0_m + error_m;
-  if (index >= lifted_from) {
-    told.end0_m.z() += lifted_m;
-    told.end1_m.z() += lifted_m;
-  }
   told.radius_m = rung.radius_m;
   told.covariance_m2 = kSigma_m * kSigma_m * Eigen::Matrix3d::Identity();
   const double length_m = (told.end1_m - told.end0_m).norm();

@@ -31,10 +31,9 @@ class PerceivedLadder {
   climb::LadderView view() const;
   std::int64_t received_us() const { return received_us_; }
 
-  bool silent = false;      ///< perception has stopped
-  int withdrawn_rung = -1;  ///< flagged as damaged from now on
-  double lifted_m = 0.0;    ///< rungs from `lifted_from` on appear so much higher: out of reach
-  int lifted_from = 0;
+  bool silent = false;        ///< perception has stopped
+  int withdrawn_rung = -1;    ///< flagged as damaged from now on
+  double seen_from_m = -1e9;  ///< rungs nearer than this above the body are not seen
 
  private:
   void tell(int index, const simulator::LadderRung& rung);

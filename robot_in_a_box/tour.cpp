@@ -162,7 +162,14 @@ void Tour::stop(bool by_estop) {
 
 void Tour::lose(climb::Leg leg) {
   const Situation now = situation_of(box_);
-  const bool is_time = now.state == S::kClimbing && now.limb == LimbState::kTransit;
+  bool is_alone = true;
+  for (const climb::Leg other : climb::kLegs) {
+    if (other == leg) continue;
+    if (box_.plant().claw(other).rung_index() == box_.plant().claw(leg).rung_index()) {
+      is_alone = false;
+    }
+  }
+  const bool is_time = is_alone && now.state == S::kClimbing && now.limb == LimbState::kTransit;
   if (is_time && now.leg != leg && leg_in_trouble_ < 0) {
     leg_in_trouble_ = leg;
     const int rung = box_.plant().leg(leg).rung_index;

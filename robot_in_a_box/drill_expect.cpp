@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_in_a_box/drill_expect.h"
+
+namespace robot_in_a_box {
+namespace {
+
+using S = climb::ControllerState;
+using simulator::kNumAxes;
+using simulator::kNumLegs;
+using simulator::PowerState;
+
+bool is_torqueless(const CaseRun& run, int but_for_axis) {
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    if (axis == but_for_axis) continue;
+    if (has_torque(run.truth_before().power[index]) && !has_torque(run.truth().power[index])) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool still_moves(const CaseRun& run) {
+  if (run.reacted_us() < 0) return false;
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const bool is_moved = run.axis(axis).moved_us > run.reacted_us() + kRunOut_us;
+    if (!simulator::is_jaw(axis) && is_moved) return true;
+  }
+  return false;
+}
+
+bool is_enabled_unarmed(const CaseRun& run) {
+  if (!is_unpowered(run.before().state)) return false;
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    if (run.axis(axis).enabled_us > run.injected_us() + kT_us) return true;
+  }
+  return false;
+}
+
+const char* harm(const CaseRun& run, int but_for_axis) {
+  if (is_enabled_unarmed(run)) return "enabled although not armed";
+  if (still_moves(run)) return "a target moves 150 ms after the reaction";
+  const bool comes_down = run.before().state == S::kDisarming;
+  if (!comes_down && is_torqueless(run, but_for_axis)) return "an axis lost its torque";
+  return harm_to_grasps(run);
+}
+
+}  // namespace
+
+bool is_unpowered(S state) {
+  return state == S::kBoot || state == S::kSelftest || state == S::kDisarmed;
+}
+
+bool is_unchanged(const CaseRun& run) {
+  const S before = run.before().state;
+  if (before == S::kBoot || before == S::kSelftest) return is_unpowered(run.state());
+  return run.state() == before;
+}
+
+bool holds_for(const CaseRun& run, climb::FaultFlags reasons) {
+  const S before = run.before().state;
+  if (is_unpowered(before)) return is_unpowered(run.state());
+  if (is_latched(before)) return run.state() == before && run.reason() == run.reason_before();
+  return run.state() == S::kFaultHold && (climb::flag(run.reason()) & reasons) != 0;
+}
+
+const char* harm_to_grasps(const CaseRun& run) {
+  if (run.truth().fallen && !run.truth_before().fallen) return "the robot fell";
+  for (int leg = 0; leg < kNumLegs; ++leg) {
+    const auto index = static_cast<std::size_t>(leg);
+    const simulator::LegTruth& now = run.truth().legs[index];
+    if (leg == run.before().leg) continue;
+    const bool is_lost = run.truth_before().legs[index].holds && !now.holds;
+    if (is_lost && now.last_loss == simulator::LossCause::kOpened) return "a claw was opened";
+  }
+  return nullptr;
+}
+
+const char* harm_after_stop(const CaseRun& run) {
+  return harm(run, -1);
+}
+
+const char* harm_but_for_axis(const CaseRun& run) {
+  return harm(run, run.some_axis());
+}
+
+const char* harm_when_silent(const CaseRun& run) {
+  if (run.reacted_us() >= 0 && run.last_master_frame_us() > run.reacted_us()) {
+    return "a frame was sent while the bus fault is latched";
+  }
+  return harm_to_grasps(run);
+}
+
+void arm_meanwhile(CaseRun& run) {
+  const bool is_time = run.since_us() == 200'000;
+  if (is_time && is_unpowered(run.before().state)) run.box().order(climb::Order::kArm);
+}
+
+}  // namespace robot_in_a_box

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fault table as data, rows 1..10: perception, targets, rungs and touch. What is injected,
+// where it applies, what must happen and by when.
+#include <array>
+
+#include "robot_in_a_box/drill_expect.h"
+#include "robot_in_a_box/drill_tables.h"
+
+namespace robot_in_a_box {
+namespace {
+
+using climb::Fault;
+using climb::flag;
+using climb::LimbState;
+using climb::Order;
+using simulator::WireFault;
+using S = climb::ControllerState;
+
+bool in_climbing(const Situation& at) {
+  return at.state == S::kClimbing;
+}
+bool in_hold(const Situation& at) {
+  return at.state == S::kHold && !at.docked;
+}
+bool works(const Situation& at) {
+  return at.state == S::kClimbing || at.state == S::kArming;
+}
+
+// --- rows 1 to 3: perception ---------------------------------------------------------------------
+
+void silence(CaseRun& run) {
+  run.memo = run.box().perception().received_us();
+  run.box().perception().silent = true;
+}
+std::int64_t last_message_at(const CaseRun& run) {
+  return run.memo;
+}
+bool is_protected(const CaseRun& run) {
+  return run.state() == S::kProtectiveHold;
+}
+const char* harm_but_loading(const CaseRun& run) {
+  const LimbState at = run.before().limb;
+  const bool finishes = at == LimbState::kLoading || at == LimbState::kVerify ||
+                        at == LimbState::kClosing || run.before().shifts;
+  return finishes ? harm_to_grasps(run) : harm_after_stop(run);
+}
+
+bool waits_for_perception(const Situation& at) {
+  return at.state == S::kProtectiveHold;
+}
+void speak_again(CaseRun& run) {
+  run.box().perception().silent = false;
+}
+std::int64_t next_message_at(const CaseRun& run) {
+  return run.messages_since() > 0 ? run.injected_us() + run.messages_since() : -1;
+}
+bool climbs_on(const CaseRun& run) {
+  return run.state() == S::kClimbing;
+}
+
+void climb_unseeing(CaseRun& run) {
+  if (run.since_us() == 400'000) run.box().order(Order::kClimb);
+}
+const char* harm_by_reaching(const CaseRun& run) {
+  for (const climb::Leg leg : climb::kLegs) {
+    const LimbState at = run.limb(leg);
+    if (at != LimbState::kLoaded && at != LimbState::kSupportLost) return "a limb was lifted";
+  }
+  return harm_to_grasps(run);
+}
+bool did_not_start(const CaseRun& run) {
+  return run.since_us() >= 420'000 && (is_protected(run) || run.state() == S::kHold);
+}
+std::int64_t climb_ordered_at(const CaseRun& run) {
+  return run.since_us() >= 410'000 ? run.injected_us() + 400'000 : -1;
+}
+
+// --- row 4: nothing in reach ---------------------------------------------------------------------
+
+bool decides_next(const Situation& at) {
+  const bool is_committed = at.limb == LimbState::kApproach || at.limb == LimbState::kClosing ||
+                            at.limb == LimbState::kVerify || at.limb == LimbState::kLoading;
+  return at.state == S::kClimbing && (at.shifts || is_committed);
+}
+void see_only_far(CaseRun& run) {
+  run.box().perception().seen_from_m = 0.75;
+}
+std::int64_t decision_due_at(const CaseRun& run) {
+  if (run.messages_since() <= 0 || run.report().output.body_shift) return -1;
+  for (const climb::Leg leg : climb::kLegs) {
+    if (run.limb(leg) != LimbState::kLoaded) return -1;
+  }
+  return run.now_us();
+}
+bool is_refused(const CaseRun& run) {
+  const bool named = run.report().output.refusal != climb::Refusal::kNone;
+  return run.state() == S::kHold && named;
+}
+void climb_anyway(CaseRun& run) {
+  if (run.since_us() == 200'000) run.box().order(Order::kClimb);
+}
+std::int64_t climbed_anyway_at(const CaseRun& run) {
+  return run.report().order == Order::kClimb && run.since_us() >= 200'000 ? run.now_us() : -1;
+}
+
+// --- row 5: the target is withdrawn --------------------------------------------------------------
+
+bool not_committed(const Situation& at) {
+  return at.state == S::kClimbing &&
+         (at.limb == LimbState::kUnloading || at.limb == LimbState::kRetracting ||
+          at.limb == LimbState::kTransit || at.limb == LimbState::kPregrasp);
+}
+bool committed(const Situation& at) {
+  return at.state == S::kClimbing &&
+         (at.limb == LimbState::kClosing || at.limb == LimbState::kApproach);
+}
+void withdraw(CaseRun& run) {
+  const auto leg = static_cast<climb::Leg>(run.moving_leg());
+  run.box().perception().withdrawn_rung = run.box().controller().limb(leg).goal().rung_id;
+}
+bool turns_back(const CaseRun& run) {
+  const LimbState at = run.limb(run.moving_leg());
+  return at == LimbState::kAbortReturn || at == LimbState::kLoading || at == LimbState::kLoaded;
+}
+bool holds_again(const CaseRun& run) {
+  const auto leg = static_cast<std::size_t>(run.moving_leg());
+  return run.limb(run.moving_leg()) == LimbState::kLoaded && run.truth().legs[leg].bears;
+}
+const char* harm_by_turning_back(const CaseRun& run) {
+  if (run.limb(run.moving_leg()) == LimbState::kAbortReturn) return "turned back after the commit";
+  return harm_to_grasps(run);
+}
+
+// --- rows 6 and 7: rungs break -------------------------------------------------------------------
+
+bool is_loading(const Situation& at) {
+  return works(at) && at.limb == LimbState::kLoading;
+}
+bool is_verified(const Situation& at) {
+  return works(at) && at.limb == LimbState::kVerify;
+}
+bool comes_close(const Situation& at) {
+  return works(at) && (at.limb == LimbState::kApproach || at.limb == LimbState::kClosing);
+}
+void break_rung(CaseRun& run, int rung) {
+  if (rung >= 0) run.box().plant().world().rung(rung).break_at_us = run.now_us();
+}
+void break_target(CaseRun& run) {
+  const auto leg = static_cast<climb::Leg>(run.moving_leg());
+  break_rung(run, run.box().controller().limb(leg).goal().rung_id);
+}
+std::int64_t touch_opened_at(const CaseRun& run, int leg) {
+  const auto index = static_cast<std::size_t>(leg);
+  const bool was = run.truth_before().legs[index].touch;
+  return was && !run.truth().legs[index].touch ? run.now_us() : -1;
+}
+std::int64_t target_touch_opened_at(const CaseRun& run) {
+  return touch_opened_at(run, run.moving_leg());
+}
+std::int64_t jaw_empty_at(const CaseRun& run) {
+  const int leg = run.moving_leg();
+  const double jaw = run.truth().joint_rad[static_cast<std::size_t>(simulator::axis_of(leg, 3))];
+  return run.limb(leg) == LimbState::kClosing && jaw < -0.55 ? run.now_us() : -1;
+}
+bool lets_go(const CaseRun& run) {
+  const LimbState at = run.limb(run.moving_leg());
+  return at == LimbState::kRegrasp || at == LimbState::kSupportLost || at == LimbState::kPregrasp ||
+         at == LimbState::kAbortReturn || run.state() == S::kFaultHold;
+}
+const char* harm_by_unloading(const CaseRun& run) {
+  for (const climb::Leg leg : climb::kLegs) {
+    const bool other = leg != run.before().leg && !run.before().docked;
+    const LimbState at = run.limb(leg);
+    if (other && at != LimbState::kLoaded && at != LimbState::kSupportLost) {
+      return "another limb was unloaded";
+    }
+  }
+  for (int leg = 0; leg < simulator::kNumLegs; ++leg) {
+    const simulator::LegTruth& now = run.truth().legs[static_cast<std::size_t>(leg)];
+    const bool was = run.truth_before().legs[static_cast<std::size_t>(leg)].holds;
+    const bool opened = now.last_loss == simulator::LossCause::kOpened;
+    if (leg != run.before().leg && was && !now.holds && opened) return "a claw was opened";
+  }
+  return nullptr;
+}
+
+bool has_stance(const Situation& at) {
+  return is_powered(at.state) || at.state == S::kArming || at.state == S::kFaultHold;
+}
+void break_stance(CaseRun& run) {
+  break_rung(run, run.box().plant().claw(run.stance_leg()).rung_index());
+}
+std::int64_t stance_touch_opened_at(const CaseRun& run) {
+  const bool counted = run.limb(run.stance_leg()) == LimbState::kLoaded ||
+                       run.limb(run.stance_leg()) == LimbState::kSupportLost;
+  return counted ? touch_opened_at(run, run.stance_leg()) : -1;
+}
+bool stops_for_stance(const CaseRun& run) {
+  return holds_for(run, flag(Fault::kStanceLost) | flag(Fault::kTooFewGrasps) |
+                            flag(Fault::kFreeFall) | flag(Fault::kTilt) | flag(Fault::kTracking));
+}
+
+// --- rows 8 to 10: touch -------------------------------------------------------------------------
+
+bool approaches(const Situation& at) {
+  return works(at) && at.limb == LimbState::kApproach;
+}
+void set_touch(CaseRun& run, WireFault fault) {
+  run.box().plant().set_wire_fault(static_cast<simulator::Line>(run.moving_leg()), fault);
+}
+void open_touch(CaseRun& run) {
+  set_touch(run, WireFault::kStuckLow);
+}
+void close_touch(CaseRun& run) {
+  set_touch(run, WireFault::kStuckHigh);
+}
+std::int64_t closing_since(const CaseRun& run) {
+  return run.limb(run.moving_leg()) == LimbState::kClosing ? run.now_us() : -1;
+}
+bool tries_again(const CaseRun& run) {
+  return run.limb(run.moving_leg()) == LimbState::kRegrasp || run.state() == S::kFaultHold;
+}
+bool gave_up(const CaseRun& run) {
+  return run.limb(run.moving_leg()) == LimbState::kAbortReturn || run.state() == S::kFaultHold;
+}
+const char* harm_by_trusting(const CaseRun& run) {
+  const LimbState at = run.limb(run.moving_leg());
+  const bool trusts = at == LimbState::kLoading || at == LimbState::kLoaded;
+  return trusts && run.state() != S::kDisarmed ? "a grasp was believed" : harm_to_grasps(run);
+}
+
+bool has_open_claw(const Situation& at) {
+  const bool is_open = at.limb == LimbState::kRetracting || at.limb == LimbState::kTransit ||
+                       at.limb == LimbState::kPregrasp || at.limb == LimbState::kApproach ||
+                       at.limb == LimbState::kReleasing || at.limb == LimbState::kAbortReturn;
+  return is_unpowered(at.state) ? at.docked && at.leg < 0 : at.leg >= 0 && is_open;
+}
+std::int64_t stands_open_at(const CaseRun& run) {
+  const int axis = simulator::axis_of(run.moving_leg(), 3);
+  const double jaw = run.truth().joint_rad[static_cast<std::size_t>(axis)];
+  return run.since_us() > 0 && jaw >= 0.9 ? run.now_us() : -1;
+}
+bool finds_stuck_touch(const CaseRun& run) {
+  const bool unpowered = is_unpowered(run.before().state);
+  if (!unpowered) return holds_for(run, flag(Fault::kTouchStuck));
+  // In BOOT nobody looks yet; it shows at the latest when it is to be armed.
+  return is_unpowered(run.state()) &&
+         (run.reason() == Fault::kTouchStuck || run.state() == S::kBoot);
+}
+bool is_closing(const Situation& at) {
+  return works(at) && at.limb == LimbState::kClosing;
+}
+void break_and_close_touch(CaseRun& run) {
+  break_target(run);
+  close_touch(run);
+}
+
+constexpr std::array kRows = {
+    DrillRow{1, "a", "perception silent", "no more messages", "PROTECTIVE_HOLD", in_climbing, 1,
+             silence, last_message_at, is_protected, harm_but_loading, nullptr, 300'000 + kT_us,
+             800'000},
+    DrillRow{1, "b", "perception silent", "messages again", "CLIMBING goes on",
+             waits_for_perception, 1, speak_again, next_message_at, climbs_on, harm_to_grasps,
+             nullptr, 2 * kT_us, 300'000},
+    DrillRow{1, "c", "perception silent", "no messages, then the order to climb", "no reach",
+             in_hold, 1, silence, climb_ordered_at, did_not_start, harm_by_reaching, climb_unseeing,
+             2 * kT_us, 1'500'000},
+    DrillRow{4, "a", "nothing in reach", "only far rungs are seen", "HOLD, reason told",
+             decides_next, 1, see_only_far, decision_due_at, is_refused, harm_to_grasps, nullptr,
+             2 * kT_us, 6'000'000},
+    DrillRow{4, "b", "nothing in reach", "far rungs only, then the order to climb",
+             "HOLD, reason told", in_hold, 1, see_only_far, climbed_anyway_at, is_refused,
+             harm_by_reaching, climb_anyway, 2 * kT_us, 1'500'000},
+    DrillRow{5, "a", "target withdrawn before commit", "its rung is flagged as damaged",
+             "ABORT_RETURN", not_committed, 1, withdraw, next_message_at, turns_back,
+             harm_to_grasps, nullptr, 2 * kT_us, 500'000},
+    DrillRow{5, "b", "target withdrawn before commit", "its rung is flagged as damaged",
+             "back on the old rung", not_committed, 1, withdraw, next_message_at, holds_again,
+             harm_to_grasps, nullptr, 12'000'000, 12'500'000},
+    DrillRow{5, "c", "target withdrawn after commit", "its rung is flagged as damaged",
+             "goes on to the contact test", committed, 1, withdraw, next_message_at, holds_again,
+             harm_by_turning_back, nullptr, 6'000'000, 6'500'000},
+    DrillRow{6, "a", "target rung breaks", "while it is loaded", "released, others hold",
+             is_loading, 1, break_target, target_touch_opened_at, lets_go, harm_by_unloading,
+             nullptr, 2 * kT_us + 20'000, 1'000'000},
+    DrillRow{6, "b", "target rung breaks", "in the pull test", "not confirmed", is_verified, 1,
+             break_target, target_touch_opened_at, lets_go, harm_by_unloading, nullptr,
+             310'000 + kT_us, 1'500'000},
+    DrillRow{6, "c", "target rung breaks", "before the claw closes", "not confirmed", comes_close,
+             1, break_target, jaw_empty_at, lets_go, harm_by_unloading, nullptr, 2'000'000 + kT_us,
+             6'000'000},
+    DrillRow{7, "", "stance rung breaks", "the rung of a limb that holds",
+             "FAULT_HOLD, SUPPORT_LOST", has_stance, 3, break_stance, stance_touch_opened_at,
+             stops_for_stance, harm_by_unloading, nullptr, 2 * kT_us + 20'000, 1'000'000},
+    DrillRow{8, "a", "touch never arrives", "switch stuck open", "REGRASP", approaches, 1,
+             open_touch, closing_since, tries_again, harm_by_trusting, nullptr, 2'000'000 + kT_us,
+             6'000'000},
+    DrillRow{8, "b", "touch never arrives", "switch stuck open", "tries end", approaches, 1,
+             open_touch, closing_since, gave_up, harm_by_trusting, nullptr, 20'000'000, 24'000'000},
+    DrillRow{9, "", "touch stuck closed", "switch closed, claw open", "FAULT_HOLD or not armed",
+             has_open_claw, 1, close_touch, stands_open_at, finds_stuck_touch, harm_after_stop,
+             arm_meanwhile, 100'000 + kT_us, 1'000'000},
+    DrillRow{10, "a", "touch and jaw disagree", "switch closed, claw empty", "not confirmed",
+             is_closing, 1, break_and_close_touch, jaw_empty_at, tries_again, harm_by_trusting,
+             nullptr, 2'000'000 + kT_us, 5'000'000},
+    DrillRow{10, "b", "touch and jaw disagree", "switch open, claw full, every try",
+             "FAULT_HOLD or given up", is_closing, 1, open_touch, closing_since, gave_up,
+             harm_by_trusting, nullptr, 20'000'000, 24'000'000},
+};
+
+}  // namespace
+
+std::span<const DrillRow> rows_of_grasps() {
+  return kRows;
+}
+
+}  // namespace robot_in_a_box

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fault table as data, rows 20..32: the controller's process, the E-stop, clocks, rivals, IMU,
+// orders, warnings.
+#include <array>
+#include <cmath>
+
+#include "robot_in_a_box/drill_expect.h"
+#include "robot_in_a_box/drill_tables.h"
+
+namespace robot_in_a_box {
+namespace {
+
+using climb::Fault;
+using climb::flag;
+using climb::Order;
+using simulator::BusFrame;
+using simulator::kNumAxes;
+using simulator::PowerState;
+using S = climb::ControllerState;
+
+constexpr std::int64_t kHang_us = 1'000'000;
+
+bool everywhere(const Situation&) {
+  return true;
+}
+bool after_boot(const Situation& at) {
+  return at.state != S::kBoot;
+}
+bool where_enabled(const Situation& at) {
+  return is_powered(at.state) || at.state == S::kFaultHold ||
+         (at.state == S::kArming && at.leg >= 0);
+}
+bool in_estop(const Situation& at) {
+  return at.state == S::kEstop;
+}
+bool in_climbing(const Situation& at) {
+  return at.state == S::kClimbing;
+}
+
+// --- rows 20 to 22: the process ------------------------------------------------------------------
+
+void kill_controller(CaseRun& run) {
+  run.box().kill();
+}
+void hang_controller(CaseRun& run) {
+  run.box().hang(kHang_us);
+}
+/// Drives that followed targets no longer do, and keep their torque.
+bool drives_stop(const CaseRun& run) {
+  for (const PowerState power : run.truth().power) {
+    if (power == PowerState::kOperationEnabled) return false;
+  }
+  return true;
+}
+bool has_enabled_drives(const CaseRun& run) {
+  for (const PowerState power : run.truth_before().power) {
+    if (power == PowerState::kOperationEnabled) return true;
+  }
+  return false;
+}
+std::int64_t left_alone_at(const CaseRun& run) {
+  return has_enabled_drives(run) ? run.injected_us() : -1;
+}
+const char* harm_without_master(const CaseRun& run) {
+  const bool should_stand = run.since_us() > 300'000 && run.since_us() < kHang_us;
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    const bool moves = std::fabs(run.truth().joint_rad_s[index]) > 0.02;
+    if (should_stand && moves && !simulator::is_jaw(axis)) return "a joint moves after 300 ms";
+    const bool had = has_torque(run.truth_before().power[index]);
+    if (had && !has_torque(run.truth().power[index])) return "an axis lost its torque";
+    const bool again = run.axis(axis).enabled_us > run.injected_us() + kHang_us;
+    if (again) return "enabled again after it hung";
+  }
+  return harm_to_grasps(run);
+}
+void hang_a_little(CaseRun& run) {
+  run.box().hang(15'000);
+}
+void hang_for_four_cycles(CaseRun& run) {
+  run.box().hang(50'000);
+}
+std::int64_t woken_at(const CaseRun& run, std::int64_t after_us) {
+  return run.since_us() >= after_us ? run.injected_us() + after_us : -1;
+}
+std::int64_t woken_after_second_at(const CaseRun& run) {
+  return woken_at(run, kHang_us);
+}
+std::int64_t woken_after_cycles_at(const CaseRun& run) {
+  return woken_at(run, 50'000);
+}
+bool holds_for_overrun(const CaseRun& run) {
+  return holds_for(run, flag(Fault::kOverrun) | flag(Fault::kServoState));
+}
+bool takes_no_notice(const CaseRun& run) {
+  return run.since_us() >= 300'000;
+}
+const char* harm_by_notice(const CaseRun& run) {
+  const bool notices = run.state() == S::kFaultHold || run.state() == S::kEstop;
+  return notices && !is_latched(run.before().state) ? "stopped for nothing" : harm_to_grasps(run);
+}
+
+void terminate(CaseRun& run) {
+  run.box().flag_fault(Fault::kTerminate);
+}
+bool rests(const CaseRun& run) {
+  return run.state() == S::kHold;
+}
+/// The limb in the air finishes, none is lifted any more.
+const char* harm_by_next_step(const CaseRun& run) {
+  for (const climb::Leg leg : climb::kLegs) {
+    const climb::LimbState at = run.limb(leg);
+    const bool begins = leg != run.before().leg && at != climb::LimbState::kLoaded;
+    if (begins && run.since_us() > 2 * kT_us) return "another step was begun";
+  }
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    const bool had = has_torque(run.truth_before().power[index]);
+    if (had && !has_torque(run.truth().power[index])) return "an axis lost its torque";
+  }
+  return harm_to_grasps(run);
+}
+bool in_rest(const Situation& at) {
+  return at.state == S::kHold || is_unpowered(at.state);
+}
+bool stays_at_rest(const CaseRun& run) {
+  return run.since_us() >= 500'000 && is_unchanged(run);
+}
+
+// --- rows 23 and 24: E-stop ----------------------------------------------------------------------
+
+void press(CaseRun& run) {
+  run.box().plant().press_estop(true);
+}
+void break_wire(CaseRun& run) {
+  run.box().plant().set_wire_fault(simulator::kEstopN, simulator::WireFault::kStuckLow);
+}
+void lose_lines(CaseRun& run) {
+  run.box().chip().lost = true;
+}
+bool stops_at_once(const CaseRun& run) {
+  if (run.state() != S::kEstop) return false;
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const AxisWatch& told = run.axis(axis);
+    const bool followed = told.enabled_us >= run.injected_us() - kT_us;
+    if (followed && told.quick_stop_us < run.injected_us()) {
+      // The frames of this cycle are on the bus already, but are seen a moment later.
+      const bool is_on_its_way = run.report().bus_phase == can::BusPhase::kStopped;
+      if (!is_on_its_way) return false;
+    }
+  }
+  return true;
+}
+const char* harm_in_estop(const CaseRun& run) {
+  const std::int64_t since_us = run.reacted_us() >= 0 ? run.reacted_us() : INT64_MAX;
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    if (run.axis(axis).enabled_us > since_us) return "enabled during the E-stop";
+    const auto index = static_cast<std::size_t>(axis);
+    const bool had = has_torque(run.truth_before().power[index]);
+    const bool lost = had && !has_torque(run.truth().power[index]);
+    if (lost && run.before().state != S::kDisarming) return "an axis lost its torque";
+  }
+  return harm_to_grasps(run);
+}
+void release(CaseRun& run) {
+  run.box().plant().press_estop(false);
+}
+bool stays_in_estop(const CaseRun& run) {
+  return run.since_us() >= 800'000 && run.state() == S::kEstop;
+}
+const char* harm_by_starting(const CaseRun& run) {
+  if (run.state() != S::kEstop) return "left ESTOP without the operator";
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    if (run.axis(axis).enabled_us > run.injected_us()) return "enabled without the operator";
+  }
+  return harm_to_grasps(run);
+}
+void reset_and_arm(CaseRun& run) {
+  if (run.since_us() == 100'000) run.box().order(Order::kReset);
+  if (run.since_us() > 200'000 && run.state() == S::kDisarmed && run.since_us() % 100'000 == 0) {
+    run.box().order(Order::kArm);
+  }
+}
+std::int64_t reset_at(const CaseRun& run) {
+  return run.since_us() >= 100'000 ? run.injected_us() + 100'000 : -1;
+}
+bool follows_again(const CaseRun& run) {
+  return run.report().bus_phase == can::BusPhase::kEnabled && run.state() != S::kEstop;
+}
+
+// --- rows 25 and 26: clocks and rivals -----------------------------------------------------------
+
+void sleep_machine(CaseRun& run) {
+  run.box().flag_fault(Fault::kSuspended);
+}
+bool holds_for_sleep(const CaseRun& run) {
+  return holds_for(run, flag(Fault::kSuspended));
+}
+void send_id(CaseRun& run, std::uint32_t id, std::uint8_t length) {
+  BusFrame frame;
+  frame.id = id;
+  frame.length = length;
+  run.box().send_foreign(frame);
+}
+void rival_sync(CaseRun& run) {
+  send_id(run, 0x080, 0);
+}
+void rival_sdo(CaseRun& run) {
+  BusFrame frame;
+  frame.id = 0x601;
+  frame.length = 8;
+  frame.bytes = {0x40, 0x41, 0x60, 0, 0, 0, 0, 0};
+  run.box().send_foreign(frame);
+}
+void rival_feed_forward(CaseRun& run) {
+  send_id(run, 0x37E, 8);
+}
+void rival_nmt(CaseRun& run) {
+  BusFrame frame;
+  frame.id = 0x000;
+  frame.length = 2;
+  frame.bytes = {0x01, 0x50, 0, 0, 0, 0, 0, 0};  // a node that is not there
+  run.box().send_foreign(frame);
+}
+bool gives_way(const CaseRun& run) {
+  const bool faulted = run.report().bus_phase == can::BusPhase::kFaulted;
+  return faulted && holds_for(run, flag(Fault::kSecondController));
+}
+const char* harm_when_rivals(const CaseRun& run) {
+  return harm_when_silent(run);
+}
+bool in_boot(const Situation& at) {
+  return at.state == S::kBoot;
+}
+void keep_sync_up(CaseRun& run) {
+  if (run.now_us() % kT_us == 0) send_id(run, 0x080, 0);
+}
+bool has_not_spoken(const CaseRun& run) {
+  return run.since_us() >= 1'000'000;
+}
+const char* harm_by_speaking(const CaseRun& run) {
+  return run.last_master_frame_us() >= 0 ? "spoke on a bus that has a master" : nullptr;
+}
+
+// --- row 27: IMU ---------------------------------------------------------------------------------
+
+bool is_armed(const Situation& at) {
+  return is_powered(at.state) || at.state == S::kFaultHold ||
+         (at.state == S::kArming && at.leg >= 0);
+}
+void tilt(CaseRun& run) {
+  run.box().imu_turn = Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY());
+}
+void fall(CaseRun& run) {
+  run.box().imu_falls = true;
+}
+void silence_imu(CaseRun& run) {
+  run.box().imu_silent = true;
+}
+bool holds_for_tilt(const CaseRun& run) {
+  return holds_for(run, flag(Fault::kTilt));
+}
+bool holds_for_fall(const CaseRun& run) {
+  return holds_for(run, flag(Fault::kFreeFall));
+}
+bool all_claws_close(const CaseRun& run) {
+  if (!holds_for_fall(run)) return false;
+  for (int leg = 0; leg < simulator::kNumLegs; ++leg) {
+    if (run.axis(simulator::axis_of(leg, 3)).target > -0.55 * 10'430.0) return false;
+  }
+  return true;
+}
+bool holds_for_imu(const CaseRun& run) {
+  return holds_for(run, flag(Fault::kImuSilent));
+}
+
+// --- rows 28, 30, 31: orders and warnings --------------------------------------------------------
+
+Order any_order(CaseRun& run) {
+  constexpr std::array<Order, 7> kOrders = {Order::kArm,   Order::kClimb, Order::kClimbDown,
+                                            Order::kPause, Order::kHold,  Order::kReset,
+                                            Order::kDisarm};
+  return kOrders[run.rng().below(7)];
+}
+void order_of_another_run(CaseRun& run) {
+  const std::uint64_t other = run.box().session_id() ^ (1ULL << run.rng().below(64));
+  run.memo = run.box().last_seq() + 1000;
+  run.box().order({any_order(run), other, run.memo});
+}
+void order_from_a_log(CaseRun& run) {
+  run.memo = static_cast<std::int64_t>(
+      run.rng().below(static_cast<std::uint32_t>(run.box().last_seq() + 1)));
+  run.box().order({any_order(run), run.box().session_id(), run.memo});
+}
+bool rejects_session(const CaseRun& run) {
+  return run.report().order_seq == run.memo &&
+         run.report().verdict == climb::CommandVerdict::kWrongSession;
+}
+bool rejects_sequence(const CaseRun& run) {
+  return run.report().order_seq == run.memo &&
+         run.report().verdict == climb::CommandVerdict::kReplayed;
+}
+bool knows_orders(const Situation& at) {
+  return at.state != S::kBoot && at.state != S::kSelftest &&
+         !(at.state == S::kDisarmed && at.docked);
+}
+const char* harm_by_obeying(const CaseRun& run) {
+  const bool by_itself = run.before().state == S::kClimbing || run.before().state == S::kArming ||
+                         run.before().state == S::kDisarming ||
+                         run.before().state == S::kProtectiveHold ||
+                         is_unpowered(run.before().state);
+  if (!by_itself && run.state() != run.before().state) return "obeyed";
+  const bool starts = is_unpowered(run.before().state) && !is_unpowered(run.state());
+  return starts ? "obeyed" : harm_to_grasps(run);
+}
+
+void warn_of_voltage(CaseRun& run) {
+  run.box().plant().warn(run.some_axis(), 0x3120);
+}
+void warn_of_heat(CaseRun& run) {
+  run.box().plant().warn(run.some_axis(), 0x4310);
+}
+
+void flood(CaseRun& run) {
+  const std::uint64_t other = run.rng().next() & ~1ULL;
+  run.box().order({any_order(run), other, static_cast<std::int64_t>(run.rng().next() >> 1)});
+}
+
+constexpr std::array kRows = {
+    DrillRow{20, "", "controller gone", "kill -9", "drives quick-stop and hold", where_enabled, 1,
+             kill_controller, left_alone_at, drives_stop, harm_without_master, nullptr,
+             150'000 + kT_us, 800'000},
+    DrillRow{21, "a", "controller hangs", "for 1 s", "drives quick-stop and hold", where_enabled, 1,
+             hang_controller, left_alone_at, drives_stop, harm_without_master, nullptr,
+             150'000 + kT_us, 2'000'000},
+    DrillRow{21, "b", "controller hung", "for 1 s", "FAULT_HOLD, not enabled again", where_enabled,
+             1, hang_controller, woken_after_second_at, holds_for_overrun, harm_without_master,
+             nullptr, 2 * kT_us, 2'000'000},
+    DrillRow{21, "c", "loop overrun", "50 ms", "FAULT_HOLD", where_enabled, 1, hang_for_four_cycles,
+             woken_after_cycles_at, holds_for_overrun, harm_after_stop, nullptr, 2 * kT_us,
+             600'000},
+    DrillRow{21, "d", "loop overrun", "once, 15 ms", "counted only", everywhere, 1, hang_a_little,
+             nullptr, takes_no_notice, harm_by_notice, nullptr, 300'000, 400'000},
+    DrillRow{22, "a", "SIGTERM", "the service is asked to end", "finishes the step, HOLD",
+             in_climbing, 1, terminate, nullptr, rests, harm_by_next_step, nullptr, 20'000'000,
+             20'500'000},
+    DrillRow{22, "b", "SIGTERM", "the service is asked to end", "torque stays", in_rest, 1,
+             terminate, nullptr, stays_at_rest, harm_after_stop, arm_meanwhile, 500'000, 900'000},
+    DrillRow{23, "a", "E-stop", "pressed", "quick stop, ESTOP", everywhere, 1, press, nullptr,
+             stops_at_once, harm_in_estop, nullptr, 20'000, 500'000},
+    DrillRow{23, "b", "E-stop", "wire broken", "quick stop, ESTOP", everywhere, 1, break_wire,
+             nullptr, stops_at_once, harm_in_estop, nullptr, 20'000, 500'000},
+    DrillRow{23, "c", "E-stop", "lines lost", "quick stop, ESTOP", everywhere, 1, lose_lines,
+             nullptr, stops_at_once, harm_in_estop, nullptr, 20'000, 500'000},
+    DrillRow{24, "a", "E-stop released", "nothing else", "nothing moves", in_estop, 1, release,
+             nullptr, stays_in_estop, harm_by_starting, nullptr, 800'000, 1'000'000},
+    DrillRow{24, "b", "E-stop released", "reset and armed", "enabled where it stands", in_estop, 1,
+             release, reset_at, follows_again, harm_to_grasps, reset_and_arm, 6'000'000, 7'000'000},
+    DrillRow{25, "", "machine slept", "BOOTTIME runs ahead", "FAULT_HOLD", everywhere, 1,
+             sleep_machine, nullptr, holds_for_sleep, harm_after_stop, arm_meanwhile, kT_us,
+             500'000},
+    DrillRow{26, "a", "second controller", "its SYNC", "silent, FAULT_HOLD", after_boot, 1,
+             rival_sync, nullptr, gives_way, harm_when_rivals, nullptr, kT_us, 600'000},
+    DrillRow{26, "b", "second controller", "its SDO", "silent, FAULT_HOLD", after_boot, 1,
+             rival_sdo, nullptr, gives_way, harm_when_rivals, nullptr, kT_us, 600'000},
+    DrillRow{26, "c", "second controller", "its RPDO", "silent, FAULT_HOLD", after_boot, 1,
+             rival_feed_forward, nullptr, gives_way, harm_when_rivals, nullptr, kT_us, 600'000},
+    DrillRow{26, "d", "second controller", "its NMT", "silent, FAULT_HOLD", after_boot, 1,
+             rival_nmt, nullptr, gives_way, harm_when_rivals, nullptr, kT_us, 600'000},
+    DrillRow{26, "e", "second controller", "is there at the start", "says nothing", in_boot, 1,
+             rival_sync, nullptr, has_not_spoken, harm_by_speaking, keep_sync_up, 1'000'000,
+             1'500'000},
+    DrillRow{27, "a", "tilt", "20 deg", "FAULT_HOLD", is_armed, 1, tilt, nullptr, holds_for_tilt,
+             harm_after_stop, nullptr, 50'000 + kT_us, 500'000},
+    DrillRow{27, "b", "free fall", "0 g", "FAULT_HOLD", everywhere, 1, fall, nullptr,
+             holds_for_fall, harm_after_stop, arm_meanwhile, 50'000 + kT_us, 700'000},
+    DrillRow{27, "c", "free fall", "0 g", "all claws close", is_armed, 1, fall, nullptr,
+             all_claws_close, harm_after_stop, nullptr, 50'000 + kT_us + 400'000, 1'000'000},
+    DrillRow{27, "d", "IMU silent", "no more readings", "FAULT_HOLD", after_boot, 1, silence_imu,
+             nullptr, holds_for_imu, harm_after_stop, arm_meanwhile, 100'000 + kT_us, 600'000},
+    DrillRow{28, "a", "order replayed", "of another session", "rejected", everywhere, 1,
+             order_of_another_run, nullptr, rejects_session, harm_by_obeying, nullptr, kT_us,
+             100'000},
+    DrillRow{28, "b", "order replayed", "an old number", "rejected", knows_orders, 1,
+             order_from_a_log, nullptr, rejects_sequence, harm_by_obeying, nullptr, kT_us, 100'000},
+    DrillRow{30, "a", "under-voltage warning", "EMCY 3120h", "finishes the step, HOLD", in_climbing,
+             1, warn_of_voltage, nullptr, rests, harm_by_next_step, nullptr, 20'000'000,
+             20'500'000},
+    DrillRow{30, "b", "temperature warning", "EMCY 4310h", "finishes the step, HOLD", in_climbing,
+             1, warn_of_heat, nullptr, rests, harm_by_next_step, nullptr, 20'000'000, 20'500'000},
+    DrillRow{30, "c", "under-voltage warning", "EMCY 3120h", "not armed, torque stays", in_rest, 1,
+             warn_of_voltage, nullptr, stays_at_rest, harm_after_stop, arm_meanwhile, 500'000,
+             900'000},
+    DrillRow{31, "", "flood", "a wrong order each millisecond", "goes on", everywhere, 1, flood,
+             nullptr, takes_no_notice, harm_by_notice, flood, 300'000, 400'000},
+};
+
+}  // namespace
+
+std::span<const DrillRow> rows_of_process() {
+  return kRows;
+}
+
+}  // namespace robot_in_a_box
