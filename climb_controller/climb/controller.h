@@ -67,6 +67,7 @@ class Controller {
   void work_arming(const ControllerInput& input);
   void work_climbing(const ControllerInput& input);
   void start_following(const ControllerInput& input);
+  PerLeg<bool> claws_round_rungs() const;
   bool end_step();
   bool ends_here(const RobotNow& now) const;
   void search(Leg leg, const ControllerInput& input);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the controller does in each of its states: boot, arming, climbing step by step, standing.
+#include <algorithm>
+
 #include "climb/controller.h"
 
 namespace climb {
@@ -40,6 +42,9 @@ void Controller::work_arming(const ControllerInput& input) {
     return;
   }
   if (const std::optional<Leg> leg = moving_leg()) return search(*leg, input);
+  for (const LimbCycle& limb : limbs_) {  // claws that held before press again first
+    if (limb.state() == LimbState::kLoaded && !limb.confirmation().holds()) return;
+  }
   for (const Leg leg : kLegs) {
     if (limbs_[leg].state() == LimbState::kLoaded) continue;
     plan_ = planner_.dock(leg, limbs_[leg].lost_rung_id(), robot_now(input), ladder_of(input));
@@ -62,19 +67,29 @@ void Controller::start_following(const ControllerInput& input) {
     take(E::kArmingRefused);
     return;
   }
-  int num_held = 0;
-  for (const Leg leg : kLegs) {
-    const LimbCycle& limb = limbs_[leg];
-    const bool held_before = limb.state() == LimbState::kLoaded && limb.rung_id() >= 0;
-    const bool holds =
-        held_before && limb.confirmation().witness().touch && !limb.confirmation().is_lost();
-    limbs_[leg].reset(limb_input(input, leg), holds);
-    num_held += holds ? 1 : 0;
+  const PerLeg<bool> holds = claws_round_rungs();
+  const auto num_held = std::count(holds.begin(), holds.end(), true);
+  // On the ladder the others carry what is not held; in the dock none, or the stand does.
+  if (hangs_ && num_held > 0 && num_held < 3) {
+    take(E::kArmingRefused);
+    return;
   }
+  for (const Leg leg : kLegs) limbs_[leg].reset(limb_input(input, leg), holds[leg]);
   watch_.arm(input);
   hangs_ = num_held >= 3;  // on the ladder again, not in the dock
   torque_part_ = hangs_ ? 1.0 : 0.0;
   following_ = began_now_ = true;
+}
+
+PerLeg<bool> Controller::claws_round_rungs() const {
+  // By where the jaw stands: the first target is the measured one, so no jaw presses just now.
+  PerLeg<bool> holds{};
+  for (const Leg leg : kLegs) {
+    const LimbCycle& limb = limbs_[leg];
+    const bool held = limb.state() == LimbState::kLoaded || limb.state() == LimbState::kSupportLost;
+    holds[leg] = held && limb.rung_id() >= 0 && limb.confirmation().witness().jaw;
+  }
+  return holds;
 }
 
 void Controller::work_climbing(const ControllerInput& input) {
@@ -198,6 +213,7 @@ void Controller::move(const ControllerInput& input) {
     LimbInput limb = limb_input(input, leg);
     limb.others_hold = limb.others_hold || parking_;  // in the dock
     limb.stop = !following_ || must_stop(leg);
+    limb.follows = following_;
     limbs_[leg].step(limb);
   }
 }

@@ -33,6 +33,7 @@ void LimbCycle::reset(const LimbInput& measured, bool holds) {
   num_places_ = 1;
   spent_s_ = in_state_s_ = waited_s_ = 0.0;
   confirmation_.forgive();
+  if (holds) confirmation_.press_again(params_.press_again_s);
   move_joints(measured.angles_rad, 0.0);
 }
 
@@ -162,7 +163,10 @@ void LimbCycle::work(const LimbInput& input) {
   const bool arrived = advance(input);
   switch (state_) {
     case S::kLoaded:
-      if (confirmation_.is_lost()) take(LimbEvent::kLost);
+      // Drives that stopped by themselves may press no more; the claw is round its rung still.
+      if (confirmation_.is_lost() && (input.follows || !confirmation_.witness().jaw)) {
+        take(LimbEvent::kLost);
+      }
       return;
     case S::kUnloading:
       target_.weight = 1.0 - path_part();

@@ -31,6 +31,7 @@ struct LimbInput {
   /// By the other feet: on the ladder the body gives way when this one pulls.
   Eigen::Isometry3d T_odom_body = Eigen::Isometry3d::Identity();
   bool stop = false;        ///< slow down along the path and stand
+  bool follows = true;      ///< drives follow targets, so a jaw that holds also presses
   bool others_hold = true;  ///< the three others, in this very cycle: else it is not released
   double dt_s = 0.01;
 };
@@ -46,6 +47,7 @@ struct LimbParams {
   double jaw_speed_rad_s = 5.0;    ///< of the jaw's target (own)
   double close_timeout_s = 2.0;    ///< without touch (contract)
   double open_timeout_s = 1.0;     ///< for a jaw to stand open (own: it takes 0.35)
+  double press_again_s = 0.3;      ///< for a held claw's touch after re-arming (own: takes 0.1)
   double others_timeout_s = 0.5;   ///< for the others to hold before it is released (own)
   double budget_s = 20.0;          ///< of all tries, from when the first rung is reached; then once
                                    ///< more from when it turns back (contract)

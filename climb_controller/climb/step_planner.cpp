@@ -7,6 +7,7 @@
 namespace climb {
 namespace {
 
+constexpr double kAhead_m = 0.10;  ///< less than half the distance of two rungs
 constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
@@ -137,6 +138,10 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
                               const LadderView& ladder) {
   PlannedStep step;
   step.leg = next_leg_of(upwards);
+  if (has_stepped(step.leg, upwards, now)) {
+    made(step.leg, upwards);
+    step.leg = next_leg_of(upwards);
+  }
   if (upwards && is_at_top(now, ladder)) {
     step.at_top = true;
     return step;
@@ -175,6 +180,14 @@ PlannedStep StepPlanner::again(const Retry& retry, const RobotNow& now, const La
     query.avoid_m = retry.tried_m;
   }
   return choose(query, now, ladder);
+}
+
+bool StepPlanner::has_stepped(Leg leg, bool upwards, const RobotNow& now) const {
+  // A step that a stop interrupted is finished while arming: the other leg of the pair is behind.
+  const Leg other = static_cast<Leg>(leg ^ 1);
+  const double lead_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]).x() -
+                        kinematics_.foot_m(other, now.stance.angles_rad[other]).x();
+  return (upwards ? lead_m : -lead_m) > kAhead_m;
 }
 
 Leg StepPlanner::next_leg_of(bool upwards) const {

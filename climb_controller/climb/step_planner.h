@@ -77,6 +77,7 @@ class StepPlanner {
 
  private:
   Leg next_leg_of(bool upwards) const;
+  bool has_stepped(Leg leg, bool upwards, const RobotNow& now) const;
   GraspQuery query_of(Leg leg, bool upwards, const RobotNow& now) const;
   Eigen::Vector3d shift_m(double ahead_m, const RobotNow& now) const;
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
