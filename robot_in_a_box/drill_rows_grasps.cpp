@@ -188,7 +188,7 @@ bool has_stance(const Situation& at) {
   return is_powered(at.state) || at.state == S::kArming || at.state == S::kFaultHold;
 }
 void break_stance(CaseRun& run) {
-  break_rung(run, run.box().plant().claw(run.stance_leg()).rung_index());
+  break_rung(run, run.box().plant().leg(run.stance_leg()).rung_index);
 }
 std::int64_t stance_touch_opened_at(const CaseRun& run) {
   const bool counted = run.limb(run.stance_leg()) == LimbState::kLoaded ||

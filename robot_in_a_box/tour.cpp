@@ -165,7 +165,7 @@ void Tour::lose(climb::Leg leg) {
   bool is_alone = true;
   for (const climb::Leg other : climb::kLegs) {
     if (other == leg) continue;
-    if (box_.plant().claw(other).rung_index() == box_.plant().claw(leg).rung_index()) {
+    if (box_.plant().leg(other).rung_index == box_.plant().leg(leg).rung_index) {
       is_alone = false;
     }
   }
