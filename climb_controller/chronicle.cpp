@@ -23,6 +23,21 @@ std::string place(int axis) {
          kJoints[axis % climb::kNumAxesPerLeg] + ")";
 }
 
+/// The first object that stands behind the refusal; "" = none is known.
+std::string culprit(const CycleReport& report) {
+  const bool is_hold = report.policy == Policy::kNoHoldOnLoss;
+  const bool is_torque = report.policy == Policy::kNoTorqueLimit;
+  for (const can::ObjectIssue& issue : report.issues) {
+    const bool concerns_hold = issue.index == 0x6007 || issue.index == 0x605A ||
+                               issue.index == 0x1016 || issue.index == 0x6085;
+    const bool concerns_torque = issue.index == 0x6072 || issue.index == 0x6077;
+    if ((is_hold && concerns_hold) || (is_torque && concerns_torque)) {
+      return " (" + can::describe(issue) + ")";
+    }
+  }
+  return "";
+}
+
 std::string hexadecimal(std::uint32_t number) {
   constexpr const char* kDigits = "0123456789ABCDEF";
   std::string text;
@@ -87,7 +102,7 @@ void Chronicle::tell_answer(const CycleReport& report) {
                           : report.output.reason != climb::Fault::kNone
                               ? climb::name(report.output.reason)
                               : std::string("not in ") + climb::name(report.output.state);
-  journal_.warning(order + " refused: " + why);
+  journal_.warning(order + " refused: " + why + culprit(report));
 }
 
 void Chronicle::tell_bus(const CycleReport& report) {

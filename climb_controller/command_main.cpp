@@ -12,6 +12,8 @@
 
 #include "climb_controller/state_words.h"
 #include "ladder_msgs/command_t.hpp"
+#include "ladder_msgs/event_t.hpp"
+#include "ladder_msgs/health_t.hpp"
 #include "runtime/bus.h"
 #include "runtime/clock.h"
 
@@ -60,7 +62,9 @@ struct Arguments {
 class Operator {
  public:
   explicit Operator(const std::string& url)
-      : bus_(url), states_(bus_.newest(runtime::channels::kClimb)) {}
+      : bus_(url),
+        states_(bus_.newest(runtime::channels::kClimb)),
+        events_(bus_.shared_queue(runtime::channels::kEvent, 64)) {}
 
   /// The next state of the controller within this time; nullptr = none came.
   const climb_state_t* next(std::int64_t until_us) {
@@ -70,6 +74,7 @@ class Operator {
       pollfd waiting{bus_.file_descriptor(), POLLIN, 0};
       ::poll(&waiting, 1, static_cast<int>((until_us - now_us) / 1000) + 1);
       bus_.drain();
+      tell_warnings();
       if (const climb_state_t* state = states_.take(runtime::clock_now().utime_us)) return state;
     }
   }
@@ -77,8 +82,19 @@ class Operator {
   void send(const command_t& command) { bus_.publish(runtime::channels::kCommand, command); }
 
  private:
+  /// What the controller warns of meanwhile: which drive, which object, which line.
+  void tell_warnings() {
+    while (const ladder_msgs::event_t* event = events_.take(0)) {
+      const bool is_ours = event->service == ladder_msgs::health_t::SERVICE_CLIMB;
+      if (is_ours && event->level >= event->LEVEL_WARNING) {
+        std::printf("  %s\n", event->text.c_str());
+      }
+    }
+  }
+
   runtime::Bus bus_;
   runtime::Mailbox<climb_state_t>& states_;
+  runtime::Queue<ladder_msgs::event_t>& events_;
 };
 
 std::int64_t after_s(double duration_s) {

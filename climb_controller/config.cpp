@@ -2,6 +2,8 @@
 #include "climb_controller/config.h"
 
 #include <algorithm>
+#include <charconv>
+#include <sstream>
 
 namespace climb_controller {
 namespace {
@@ -108,7 +110,9 @@ void read(ConfigTable table, climb::GraspChoiceParams& p) {
   table.read("max_step_m", p.max_step_m);
   table.read("min_joint_margin_rad", p.min_joint_margin_rad);
   table.read("min_sigma_J_m", p.min_sigma_J_m);
+  table.read("same_rung_m", p.same_rung_m);
   table.read("claw_clearance_m", p.claw_clearance_m);
+  table.read("retry_distance_m", p.retry_distance_m);
   table.read("num_approach_points", p.num_approach_points);
   table.read("lateral_cost", p.lateral_cost);
   table.read("step_cost", p.step_cost);
@@ -120,8 +124,11 @@ void read(ConfigTable table, climb::GraspChoiceParams& p) {
 void read(ConfigTable table, climb::LimbParams& p) {
   table.read("jaw_speed_rad_s", p.jaw_speed_rad_s);
   table.read("close_timeout_s", p.close_timeout_s);
+  table.read("open_timeout_s", p.open_timeout_s);
+  table.read("others_timeout_s", p.others_timeout_s);
   table.read("budget_s", p.budget_s);
   table.read("max_tries", p.max_tries);
+  table.read("max_tries_elsewhere", p.max_tries_elsewhere);
   table.read("try_offset_m", p.try_offset_m);
   table.read("empty_window_rad", p.empty_window_rad);
 }
@@ -181,6 +188,27 @@ void read(ConfigTable table, const char* key, climb::PerAxis<int>& values) {
   }
 }
 
+/// "605E:0 607D:1", hexadecimal index and subindex; "" = none.
+std::vector<can::cia402::Object> read_objects(ConfigTable table, const char* key) {
+  std::string text;
+  table.read(key, text);
+  std::vector<can::cia402::Object> objects;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    can::cia402::Object object;
+    const char* const end = word.data() + word.size();
+    const auto index = std::from_chars(word.data(), end, object.index, 16);
+    const bool has_index = index.ec == std::errc() && index.ptr != end && *index.ptr == ':';
+    if (!has_index) table.fail(key, "is \"" + word + "\"; written as 605E:0");
+    const auto subindex = std::from_chars(index.ptr + 1, end, object.subindex, 16);
+    if (subindex.ec != std::errc() || subindex.ptr != end) {
+      table.fail(key, "is \"" + word + "\"; written as 605E:0");
+    }
+    objects.push_back(object);
+  }
+  return objects;
+}
+
 void read(ConfigTable table, DriveLayout& p) {
   read(table, "node_id", p.node_id);
   for (const int id : p.node_id) {
@@ -238,6 +266,8 @@ void read(ConfigTable table, climb::ControllerParams& p) {
   table.read("selftest_s", p.selftest_s, {0.0, 60.0});
   table.read("enable_timeout_s", p.enable_timeout_s, {0.1, 60.0});
   table.read("dock_timeout_s", p.dock_timeout_s, {1.0, 3600.0});
+  table.read("max_shifts", p.max_shifts, {0, 10});
+  table.read("reset_after_s", p.reset_after_s, {0.0, 10.0});
   read(table.table("robot"), p.climb.robot);
   read(table.table("motion"), p.climb.motion);
   read(table.table("support"), p.climb.support);
@@ -264,6 +294,7 @@ ServiceParams read_params(ConfigTable table) {
   ConfigTable can = table.table("can");
   can.read("interface", params.can_interface);
   can.read("feed_forward", params.feed_forward);
+  params.accepted_objects = read_objects(can, "accepted_objects");
   params.cycle.controller.feed_forward = params.feed_forward;
   read(table.table("lines"), params.lines);
   read(table.table("attitude"), params.attitude);
@@ -280,6 +311,7 @@ ServiceParams read_params(ConfigTable table) {
 can::Cia402Params bus_params(const ServiceParams& params) {
   can::Cia402Params bus = servo_bus_params(params.drives, params.cycle.controller.climb);
   bus.feed_forward = params.feed_forward;
+  bus.optional_objects = params.accepted_objects;
   return bus;
 }
 

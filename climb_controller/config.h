@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/drive_layout.h"
@@ -17,6 +18,7 @@ struct ServiceParams {
   DriveLayout drives;
   std::string can_interface = "can0";
   bool feed_forward = false;
+  std::vector<can::cia402::Object> accepted_objects;  ///< of odd drives: as they are, or absent
   gpio::LinesParams lines;
   climb::AttitudeParams attitude;
   PerceptionParams perception;

@@ -80,10 +80,12 @@ void ControlCycle::read(const CycleInbox& inbox) {
     const can::AxisFeedback& heard = feedback_[axis];
     silent_cycles_[axis] = heard.fresh ? 0 : std::min(silent_cycles_[axis], 1000) + 1;
     climb::AxisReading& reading = input_.axes[axis];
-    reading.position_rad = heard.position_rad;
+    // A drive that restarts has no position from that moment: what it said last still counts, so
+    // that the restart is the reason told, not its silence.
+    if (std::isfinite(heard.position_rad)) reading.position_rad = heard.position_rad;
     // A drive without torque measurement bears nothing that could confirm a grasp.
     reading.torque_Nm = std::isfinite(heard.torque_Nm) ? heard.torque_Nm : 0.0;
-    reading.valid = silent_cycles_[axis] <= kMaxSilentCycles && std::isfinite(heard.position_rad);
+    reading.valid = silent_cycles_[axis] <= kMaxSilentCycles;
   }
   input_.now_us = now_us_;
   input_.imu = inbox.imu;

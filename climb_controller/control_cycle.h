@@ -86,7 +86,7 @@ struct CycleReport {
   climb::PerAxis<can::AxisFeedback> axes{};
   LineLevels lines;
   Listed<can::Fault, 32> bus_faults;
-  Listed<can::ObjectIssue, 32> issues;
+  Listed<can::ObjectIssue, 64> issues;
   Policy policy = Policy::kNone;
   /// The last order that was answered.
   climb::Order order = climb::Order::kNone;

@@ -19,7 +19,7 @@ struct ControllerParams {
   WatchParams watch;
   std::uint64_t session_id = 0;  ///< random per run, not 0: commands must echo it
   bool feed_forward = true;      ///< torque that bears the weight
-  bool on_ladder = true;         ///< fewer than three grasps outside the dock = fall alarm
+  bool on_ladder = true;         ///< arming grasps; fewer than three grasps = fall alarm
   /// Brakes or self-locking claws carry it without torque (power_off_hold is not "none"), or it
   /// stands in the dock again: only then it may be disarmed while it hangs.
   bool power_off_holds = false;

@@ -41,6 +41,10 @@ void Controller::work_arming(const ControllerInput& input) {
       take(E::kArmingRefused);
     return;
   }
+  if (!params_.on_ladder) {  // where it stands
+    take(E::kArmed);
+    return;
+  }
   if (const std::optional<Leg> leg = moving_leg()) return search(*leg, input);
   for (const LimbCycle& limb : limbs_) {  // claws that held before press again first
     if (limb.state() == LimbState::kLoaded && !limb.confirmation().holds()) return;

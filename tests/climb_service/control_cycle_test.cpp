@@ -55,5 +55,96 @@ TEST(ControlCycle, EstopIsLatchedUntilReset) {
   EXPECT_EQ(bench.violations(), "");
 }
 
+simulator::PlantParams without_hold_on_loss() {
+  simulator::PlantParams params;
+  for (simulator::DriveParams& drive : params.drives) drive.objects.abort_connection_option = false;
+  return params;
+}
+
+// Drives that would not hold by themselves are never armed for climbing; the object is named.
+TEST(ControlCycle, RefusesDrivesWithoutHoldOnLoss) {
+  CycleBench bench(without_hold_on_loss());
+  bench.run_s(5.0);
+  EXPECT_EQ(bench.reason(), Fault::kConfiguration) << bench.problems();
+  EXPECT_EQ(bench.order(Order::kArm), CommandVerdict::kNotNow);
+  EXPECT_EQ(bench.report.policy, Policy::kNoHoldOnLoss);
+  EXPECT_NE(bench.problems().find("6007h"), std::string::npos) << bench.problems();
+  bench.run_s(1.0);
+  EXPECT_NE(bench.report.bus_phase, can::BusPhase::kEnabled);
+  EXPECT_EQ(bench.violations(), "");
+}
+
+// Allowed for ground tests, the same drives are armed where they stand, hold, and never climb.
+TEST(ControlCycle, GroundTestHoldsAndNeverClimbs) {
+  CycleParams params;
+  params.allow_no_hold_on_loss = true;
+  CycleBench bench(without_hold_on_loss(), params);
+  ASSERT_TRUE(arm(bench)) << bench.problems();
+  const auto before = bench.report.axes;
+  bench.run_s(1.0);
+  for (int axis = 0; axis < climb::kNumAxes; ++axis) {
+    EXPECT_NEAR(bench.report.axes[axis].position_rad, before[axis].position_rad, 1e-3);
+  }
+  EXPECT_EQ(bench.order(Order::kClimb), CommandVerdict::kNotNow);
+  EXPECT_EQ(bench.report.policy, Policy::kGroundTest);
+  EXPECT_EQ(bench.order(Order::kDisarm), CommandVerdict::kAccepted);
+  EXPECT_TRUE(bench.reach(ControllerState::kDisarmed));
+  EXPECT_EQ(bench.violations(), "");
+}
+
+// With nothing to hold it without power the robot is armed in the dock and never leaves it.
+TEST(ControlCycle, WithoutPowerOffHoldItNeverLeavesTheGround) {
+  CycleParams params;
+  params.power_off_hold = PowerOffHold::kNone;
+  CycleBench bench({}, params);
+  ASSERT_TRUE(arm(bench)) << bench.problems();
+  EXPECT_EQ(bench.order(Order::kClimb), CommandVerdict::kNotNow);
+  EXPECT_EQ(bench.report.policy, Policy::kNoPowerOffHold);
+}
+
+// An order of another session, a repeated number, and silence change nothing; the number that the
+// operator continues from is not taken from a stranger.
+TEST(ControlCycle, OrdersOfOthersChangeNothing) {
+  CycleBench bench;
+  ASSERT_TRUE(bench.reach(ControllerState::kDisarmed));
+  bench.inbox.command = {Order::kArm, kSession + 1, 1000};
+  bench.step();
+  EXPECT_EQ(bench.report.verdict, CommandVerdict::kWrongSession);
+  EXPECT_EQ(bench.report.order_seq, -1);
+  bench.inbox.command = {Order::kPause, kSession, 7};
+  bench.step();
+  EXPECT_EQ(bench.report.verdict, CommandVerdict::kNotNow);
+  bench.inbox.command = {Order::kArm, kSession, 7};
+  bench.step();
+  EXPECT_EQ(bench.report.verdict, CommandVerdict::kReplayed);
+  bench.run_s(1.0);
+  EXPECT_EQ(bench.state(), ControllerState::kDisarmed);
+  EXPECT_EQ(bench.violations(), "");
+}
+
+// A drive that restarted in service has lost its configuration: FAULT_HOLD, and the reset brings it
+// back before the next arming.
+TEST(ControlCycle, ResetConfiguresARestartedDriveAgain) {
+  CycleBench bench;
+  ASSERT_TRUE(arm(bench)) << bench.problems();
+  bench.plant.reboot(6);
+  bench.run_s(0.5);
+  EXPECT_EQ(bench.state(), ControllerState::kFaultHold);
+  EXPECT_EQ(bench.reason(), Fault::kServoState) << bench.problems();
+  EXPECT_EQ(bench.order(Order::kReset), CommandVerdict::kAccepted) << bench.problems();
+  EXPECT_EQ(bench.state(), ControllerState::kDisarmed) << bench.problems();
+  EXPECT_TRUE(bench.report.bus_faults.size == 0) << bench.problems();
+}
+
+// Before anything was armed the bus is brought up again and again, without being asked.
+TEST(ControlCycle, WaitsForDrivesThatComeLate) {
+  CycleBench bench;
+  for (int axis = 0; axis < climb::kNumAxes; ++axis) bench.plant.drive(axis).faults.silent = true;
+  bench.run_s(6.0);
+  EXPECT_EQ(bench.state(), ControllerState::kBoot);
+  for (int axis = 0; axis < climb::kNumAxes; ++axis) bench.plant.drive(axis).faults.silent = false;
+  EXPECT_TRUE(bench.reach(ControllerState::kDisarmed)) << bench.problems();
+}
+
 }  // namespace
 }  // namespace climb_controller
