@@ -110,6 +110,10 @@ void DriveCheck::start_bus() {
   // An ordinary process on a desk: a late cycle says nothing about the drive.
   bus.max_missed_cycles = 10;
   bus.line.max_stalled_cycles = 10;
+  // Whoever else is on the bus may speak and is told nothing.
+  for (int node = 1; node < can::cia402::kMasterNode; ++node) {
+    if (node != params_.axis.node_id) bus.other_nodes.push_back(static_cast<std::uint8_t>(node));
+  }
   can::AxisConfig& axis = bus.axes.emplace_back(params_.axis);
   report_.start_rad =
       can::rad_from_counts(axis, static_cast<std::int32_t>(*report_.identity.position));

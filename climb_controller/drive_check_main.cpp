@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ladder-drive-check: one CiA 402 drive on a bus of its own, before it goes into the robot. Exit
+// ladder-drive-check: one CiA 402 drive, before it goes into the robot. Exit
 // codes: 0 fit (with --ground also: works on the ground), 1 does not work, 2 wrong arguments, 3
 // works, but is not fit for climbing, 4 the CAN line cannot be opened.
 #include <algorithm>

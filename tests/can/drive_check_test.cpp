@@ -36,6 +36,7 @@ class Desk {
         for (const auto& answer : drive.hear(line.sent[num_delivered_])) line.put(answer);
       }
       for (const auto& frame : drive.tick(ms)) line.put(frame);
+      if (neighbour_speaks && ms % 5 == 0) line.put(can::from_hex("707#05"));
       states.insert(drive.status_word() & 0x6F);
       if (drive.position > farthest) farthest = drive.position;
     }
@@ -50,6 +51,7 @@ class Desk {
   std::set<int> states;
   std::int32_t farthest = INT32_MIN;
   int cancel_at_ms = -1;
+  bool neighbour_speaks = false;
   std::string text;
 
  private:
@@ -130,6 +132,18 @@ TEST(DriveCheck, ResetsAFaultWhenAsked) {
   desk.params.reset_fault = true;
   EXPECT_EQ(desk.run().verdict, DriveVerdict::kFit) << desk.text;
   EXPECT_EQ(desk.drive.num_fault_resets(), 1);
+}
+
+// Other drives on the bus may speak, and nothing is sent to them.
+TEST(DriveCheck, LeavesTheNeighboursAlone) {
+  Desk desk;
+  desk.neighbour_speaks = true;
+  EXPECT_EQ(desk.run().verdict, DriveVerdict::kFit) << desk.text;
+  for (const can::CanFrame& frame : desk.line.sent) {
+    const bool is_for_all = frame.id == 0x080 || frame.id == 0x77F;
+    const bool is_nmt = frame.id == 0x000 && frame.data[1] == 2;
+    EXPECT_TRUE(is_for_all || is_nmt || (frame.id & 0x7F) == 2) << can::hex(frame);
+  }
 }
 
 // Cancelled in the middle of a move: torque is walked down before the end.
