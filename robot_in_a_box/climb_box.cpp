@@ -21,17 +21,21 @@ climb_controller::CycleParams cycle_params(const ClimbBoxParams& params) {
 
 ClimbBox::ClimbBox(const ClimbBoxParams& params)
     : bus_(params.seed, params.bus_latency_us),
-      plant_(params.plant, bus_),
+      plant_(params.plant, bus_, params.mechanics),
       foreign_port_(bus_.attach(127)),
       transport_(bus_),
       chip_(plant_),
       lines_(gpio::LinesParams{}, chip_),
-      perception_(params.perception, params.seed, plant_.T_world_body().translation()),
+      perception_(params.perception, params.seed),
       master_(servo_bus_params(params.drives, params.cycle.controller.climb), transport_),
       cycle_(cycle_params(params), master_),
       monitor_(simulator::MonitorParams(params.plant)) {
   bus_.record(true);
   monitor_.on_truth(plant_.truth());
+}
+
+Eigen::Isometry3d ClimbBox::T_odom_body() const {
+  return report_.output.pose.T_odom_body();
 }
 
 void ClimbBox::send_foreign(const simulator::BusFrame& frame) {
@@ -48,7 +52,7 @@ void ClimbBox::millisecond() {
   now_us_ += kStep_us;
   if (watcher_ != nullptr) watcher_->before(now_us_);
   plant_.advance(now_us_);
-  perception_.update(now_us_, plant_);
+  perception_.update(now_us_, plant_, T_odom_body());
   transport_.set_time(now_us_);
   observe();
   if (now_us_ < hung_until_us_ || now_us_ % kCycle_us == 0) return;

@@ -14,12 +14,14 @@
 #include "robot_in_a_box/memory_transport.h"
 #include "robot_in_a_box/perceived_ladder.h"
 #include "simulator/plant/monitor.h"
+#include "simulator/plant/quasi_static.h"
 
 namespace robot_in_a_box {
 
 struct ClimbBoxParams {
   std::uint64_t seed = 1;
   simulator::PlantParams plant;
+  simulator::MakeMechanics mechanics = simulator::make_quasi_static;
   PerceptionParams perception;
   climb_controller::CycleParams cycle;  ///< its session id is overwritten by one from the seed
   climb_controller::DriveLayout drives;
@@ -68,6 +70,8 @@ class ClimbBox {
   const simulator::Monitor& monitor() const { return monitor_; }
   PerceivedLadder& perception() { return perception_; }
   MemoryChip& chip() { return chip_; }
+  /// As the controller estimates it.
+  Eigen::Isometry3d T_odom_body() const;
   int master_port() const { return transport_.port(); }
 
   /// From somebody else on the bus.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rungs as perception would tell them, made from the plant's truth: at 15 Hz, in the odom frame,
-// with an error per rung that stays and one per message that does not. No cameras, no cloud.
+// with an error per rung that stays and one per message that does not. Heads see the ladder from
+// the body, so an error of the body's estimated pose goes into the rungs too, as it does in life.
+// No cameras, no cloud.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +24,12 @@ struct PerceptionParams {
 
 class PerceivedLadder {
  public:
-  PerceivedLadder(const PerceptionParams& params, std::uint64_t seed,
-                  const Eigen::Vector3d& odom_origin_m);
+  PerceivedLadder(const PerceptionParams& params, std::uint64_t seed);
 
-  /// The next message when one is due; false = nothing new.
-  bool update(std::int64_t now_us, const simulator::RobotPlant& plant);
+  /// The next message when one is due; false = nothing new. `T_odom_body` is what the controller
+  /// publishes.
+  bool update(std::int64_t now_us, const simulator::RobotPlant& plant,
+              const Eigen::Isometry3d& T_odom_body);
 
   climb::LadderView view() const;
   std::int64_t received_us() const { return received_us_; }
@@ -36,11 +39,10 @@ class PerceivedLadder {
   double seen_from_m = -1e9;  ///< rungs nearer than this above the body are not seen
 
  private:
-  void tell(int index, const simulator::LadderRung& rung);
+  void tell(int index, const simulator::LadderRung& rung, const Eigen::Isometry3d& T_odom_world);
 
   PerceptionParams params_;
   base::Rng rng_;
-  Eigen::Vector3d odom_origin_m_;
   std::vector<Eigen::Vector3d> bias_m_;
   std::vector<climb::RungView> rungs_;
   std::vector<climb::StretchView> stretches_;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A scene as a MuJoCo model with its state. The heads render any model's geoms; which geom belongs
-// to which true rung is kept here. (Nothing moves yet: the robot in physics will be added to the
-// same model.)
+// to which true rung is kept here. Nothing moves here; the robot in
+// physics stands in physics/.
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <mujoco/mujoco.h>
@@ -13,9 +12,6 @@
 #include "simulator/scene.h"
 
 namespace simulator {
-
-/// The scene as MuJoCo's XML; brightness travels as the geom's grey value.
-std::string to_mjcf(const Scene& scene);
 
 class World {
  public:

@@ -35,6 +35,8 @@ struct BodyMotion {
 class Mechanics {
  public:
   virtual ~Mechanics() = default;
+  /// Once, before the first step.
+  virtual void take_over(std::span<Drive> drives) = 0;
   /// One step of the grid (Drive::kStep_us): moves the joints as the drives command, breaks rungs
   /// that are due or overloaded. `drives` holds kNumAxes elements.
   virtual void step(std::int64_t now_us, std::span<Drive> drives, RungWorld& world) = 0;

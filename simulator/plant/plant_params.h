@@ -31,6 +31,7 @@ struct PlantParams {
   double foot_stiffness_N_m = 24'000.0;  ///< of one leg with its servos (own: 800 Nm/rad at 0.18 m)
   double dock_stiffness_N_m = 20'000.0;  ///< at each of the four hips (own)
   double weight_N = 78.5;
+  double ladder_x_m = 0.0;      ///< of the ladder's plane
   double stand_off_m = 0.28;    ///< body origin before the rungs at the start
   double body_height_m = 0.60;  ///< of the origin at the start
   double foot_y_m = 0.15;

@@ -21,6 +21,7 @@ class QuasiStatic : public Mechanics {
   /// The starting angles of params.drives are where the legs are (see place_legs()).
   explicit QuasiStatic(const PlantParams& params);
 
+  void take_over(std::span<Drive>) override {}  // the motors move by themselves
   void step(std::int64_t now_us, std::span<Drive> drives, RungWorld& world) override;
   const BodyMotion& body() const override { return body_; }
   const LegTruth& leg(int leg) const override { return legs_[static_cast<std::size_t>(leg)]; }

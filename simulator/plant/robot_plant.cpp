@@ -33,6 +33,7 @@ RobotPlant::RobotPlant(const PlantParams& params, MemoryBus& bus, const MakeMech
     drives_.emplace_back(drive);
     drive_ports_.push_back(bus_.attach(drive.node_id));
   }
+  mechanics_->take_over(drives_);
   for (int leg = 0; params.has_force_nodes && leg < kNumLegs; ++leg) {
     const auto node_id = static_cast<std::uint8_t>(0x21 + leg);
     force_nodes_.emplace_back(node_id);

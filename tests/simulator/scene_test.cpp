@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "simulator/mjcf.h"
 #include "simulator/world.h"
 
 namespace simulator {
