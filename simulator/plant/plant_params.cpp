@@ -52,7 +52,8 @@ Eigen::Isometry3d starting_pose(const PlantParams& params) {
   // Body x up the ladder, z away from it.
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() << 0, 0, -1, 0, 1, 0, 1, 0, 0;
-  pose.translation() = Eigen::Vector3d(params.ladder_x_m - params.stand_off_m, 0.0, params.body_height_m);
+  pose.translation() =
+      Eigen::Vector3d(params.ladder_x_m - params.stand_off_m, 0.0, params.body_height_m);
   return pose;
 }
 
