@@ -101,7 +101,10 @@ void BusLine::stalled() {
 
 void BusLine::raise(FaultCause cause, int axis, std::uint32_t detail) {
   if (!is_watching_) return;
+  const bool is_first = is_bus_fault(cause) && !is_faulted_;
   if (is_bus_fault(cause)) is_faulted_ = true;
+  // What has not left yet must not leave when the bus comes back.
+  if (is_first && is_usable_ && transport_.has_unsent_frames()) transport_.purge_transmit_queue();
   const Fault fault{cause, axis, detail, now_us_};
   if (faults_.raise(fault) && recorder_ != nullptr) recorder_->record(fault);
 }
@@ -117,6 +120,7 @@ bool BusLine::clear() {
     raise(FaultCause::kInterfaceLost, -1, 0);
   } else if (was_faulted && transport_.has_unsent_frames() &&
              transport_.purge_transmit_queue() != PurgeResult::kPurged) {
+    is_faulted_ = true;  // nothing more to purge
     raise(FaultCause::kTransmitStalled, -1, 0);
   }
   return !is_faulted_;

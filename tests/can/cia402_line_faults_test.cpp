@@ -146,7 +146,7 @@ TEST(Cia402LineFaults, TransmitQueueFull) {
 }
 
 // Frames that have not left stop the sending at once, so that none older than two cycles is behind
-// them; re-arming purges them, and without a purge nothing is sent.
+// them, and are purged with the fault: they must not leave when the bus comes back.
 TEST(Cia402LineFaults, StaleFramesAreNeverSent) {
   BusRig rig(1);
   ASSERT_TRUE(rig.bring_to_enabled());
@@ -155,19 +155,35 @@ TEST(Cia402LineFaults, StaleFramesAreNeverSent) {
   const std::size_t before = rig.line.sent.size();
   rig.cycle();
   EXPECT_EQ(rig.line.sent.size(), before);
+  EXPECT_EQ(rig.line.num_purges, 0);
   rig.cycle();
   EXPECT_TRUE(rig.has(FaultCause::kTransmitStalled, -1));
-  expect_silence(rig);
-  rig.line.purge_result = PurgeResult::kNotPermitted;
-  rig.bus->rearm();
-  rig.run_ms(20);
+  EXPECT_EQ(rig.line.num_purges, 1);
+  EXPECT_FALSE(rig.line.has_unsent);
   expect_silence(rig);
   EXPECT_EQ(rig.line.num_purges, 1);
-  rig.line.purge_result = PurgeResult::kPurged;
   rig.drives[0].position = -444;  // it sagged meanwhile
   rig.bus->rearm();
   ASSERT_TRUE(rig.run_until(BusPhase::kReady, 2000)) << rig.fault_names();
   EXPECT_EQ(rig.drives[0].target(), -444);  // from the measured position, not from the old target
+}
+
+// Where nothing could be purged, nothing is sent again before it can.
+TEST(Cia402LineFaults, WithoutPurgeNothingIsSent) {
+  BusRig rig(1);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.line.has_unsent = true;
+  rig.line.purge_result = PurgeResult::kNotPermitted;
+  rig.run_ms(20);
+  EXPECT_TRUE(rig.has(FaultCause::kTransmitStalled, -1));
+  rig.bus->rearm();
+  rig.run_ms(20);
+  EXPECT_TRUE(rig.has(FaultCause::kTransmitStalled, -1));
+  expect_silence(rig);
+  EXPECT_EQ(rig.line.num_purges, 2);
+  rig.line.purge_result = PurgeResult::kPurged;
+  rig.bus->rearm();
+  EXPECT_TRUE(rig.run_until(BusPhase::kReady, 2000)) << rig.fault_names();
 }
 
 // A lost interface silences the bus; when it is back, nothing happens before rearm().
