@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 #include <vector>
 
 #include <poll.h>
@@ -97,6 +98,7 @@ void KernelBox::wait() {
 }
 
 void KernelBox::step_plant() {
+  if (happen_ && now_us() >= happens_us_) std::exchange(happen_, nullptr)();
   const std::int64_t at_us = now_us();
   hub_.take_in(at_us);
   plant_.advance(at_us);
@@ -128,7 +130,6 @@ void KernelBox::step_controller() {
 void KernelBox::tell_monitor() {
   if (report_.order_seq != told_seq_ && report_.verdict == climb::CommandVerdict::kAccepted) {
     if (report_.order == climb::Order::kArm) monitor_.on_session(now_us(), SessionEvent::kArmed);
-    if (report_.order == climb::Order::kReset) monitor_.on_session(now_us(), SessionEvent::kReset);
   }
   told_seq_ = report_.order_seq;
   if (state() == ControllerState::kDisarmed && told_state_ != state()) {
@@ -139,6 +140,11 @@ void KernelBox::tell_monitor() {
     monitor_.on_stop(now_us(), static_cast<int>(reason()) + 1);
   }
   told_state_ = state();
+}
+
+void KernelBox::at(std::int64_t time_us, std::function<void()> happen) {
+  happens_us_ = time_us;
+  happen_ = std::move(happen);
 }
 
 void KernelBox::run_s(double duration_s) {
@@ -154,6 +160,8 @@ bool KernelBox::reach(ControllerState wanted, double within_s) {
 
 climb::CommandVerdict KernelBox::order(climb::Order what) {
   command_ = {what, kSession, ++seq_};
+  // The bus speaks again while the reset is under way, before it is answered.
+  if (what == climb::Order::kReset) monitor_.on_session(now_us(), SessionEvent::kReset);
   cycle();
   while (report_.is_resetting) cycle();
   return report_.verdict;

@@ -43,6 +43,9 @@ class KernelBox {
   /// Until it is answered. With this run's session and the next number.
   climb::CommandVerdict order(climb::Order what);
 
+  /// Once, before the plant's first step at or after this time.
+  void at(std::int64_t time_us, std::function<void()> happen);
+
   climb::ControllerState state() const { return report_.output.state; }
   climb::Fault reason() const { return report_.output.reason; }
   const climb_controller::CycleReport& report() const { return report_; }
@@ -88,6 +91,8 @@ class KernelBox {
   std::int64_t seq_ = 0;
   std::int64_t due_us_ = 0;
   std::int64_t master_heard_us_ = 0;
+  std::int64_t happens_us_ = 0;
+  std::function<void()> happen_;
   climb::ControllerState told_state_ = climb::ControllerState::kBoot;
   std::int64_t told_seq_ = -1;
 };
