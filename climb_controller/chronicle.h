@@ -29,7 +29,6 @@ class Chronicle {
   climb::ControllerState state_ = climb::ControllerState::kBoot;
   climb::Fault reason_ = climb::Fault::kNone;
   climb::Refusal refusal_ = climb::Refusal::kNone;
-  std::int64_t order_seq_ = -1;
   std::uint64_t num_answers_ = 0;
   std::size_t num_faults_ = 0;
   std::size_t num_issues_ = 0;
