@@ -125,6 +125,7 @@ void read(ConfigTable table, climb::LimbParams& p) {
   table.read("jaw_speed_rad_s", p.jaw_speed_rad_s);
   table.read("close_timeout_s", p.close_timeout_s);
   table.read("open_timeout_s", p.open_timeout_s);
+  table.read("press_again_s", p.press_again_s);
   table.read("others_timeout_s", p.others_timeout_s);
   table.read("budget_s", p.budget_s);
   table.read("max_tries", p.max_tries);
@@ -268,6 +269,9 @@ void read(ConfigTable table, climb::ControllerParams& p) {
   table.read("dock_timeout_s", p.dock_timeout_s, {1.0, 3600.0});
   table.read("max_shifts", p.max_shifts, {0, 10});
   table.read("reset_after_s", p.reset_after_s, {0.0, 10.0});
+  table.read("put_down_after_s", p.put_down_after_s, {0.0, 10.0});
+  table.read("torque_ramp_s", p.torque_ramp_s, {0.0, 10.0});
+  table.read("max_sag_m", p.max_sag_m, {0.0, 0.1});
   read(table.table("robot"), p.climb.robot);
   read(table.table("motion"), p.climb.motion);
   read(table.table("support"), p.climb.support);

@@ -71,6 +71,22 @@ def check_file(path, text):
     yield from check_includes(path, text)
 
 
+PARAMETERS = re.compile(r"struct (\w+Params|JointLimits|DriveKind) \{(.*?)\n\};", re.DOTALL)
+PARAMETER = re.compile(r"^  (?:double|int|bool|std::int64_t) (\w+)(?: = [^;]+)?;", re.MULTILINE)
+# Decided by other keys: the service derives them.
+DERIVED = {"on_ladder", "power_off_holds"}
+
+
+def check_climb_configuration(root):
+    """Each parameter of the climbing library can be set: climb_controller/config.cpp reads a key of its name."""
+    read = (root / "climb_controller/config.cpp").read_text()
+    for header in sorted((root / "climb_controller/climb").glob("*.h")):
+        for struct, body in PARAMETERS.findall(header.read_text()):
+            for field in PARAMETER.findall(body):
+                if field not in DERIVED and f'"{field}"' not in read:
+                    yield f"{header.relative_to(root)}: {struct}.{field} is not read in climb_controller/config.cpp"
+
+
 def main():
     root = pathlib.Path(__file__).resolve().parents[2]
     listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=root, capture_output=True, text=True, check=True)
@@ -85,6 +101,7 @@ def main():
             continue
         checked += 1
         problems.extend(check_file(path, text))
+    problems.extend(check_climb_configuration(root))
     print("\n".join(problems) if problems else f"house rules hold in {checked} files")
     return 1 if problems or not checked else 0
 
