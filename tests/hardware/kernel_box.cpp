@@ -55,7 +55,7 @@ KernelBox::KernelBox(const KernelBoxParams& params)
       hub_(bus_, simulator::open_gateway(params.plant_interface)),
       wires_(params.chip_folder, {0, 1, 2, 3, 4}),
       monitor_(monitor_params(params)),
-      perception_({}, 1, plant_.T_world_body().translation()),
+      perception_({}, 1),
       socket_(can::CanSocketParams{params.controller_interface}),
       master_(climb_controller::servo_bus_params({}, cycle_params().controller.climb), socket_,
               &recorder_),
@@ -104,7 +104,7 @@ void KernelBox::step_plant() {
   plant_.advance(at_us);
   hub_.give_out(at_us);
   wires_.publish(plant_.lines());
-  perception_.update(at_us, plant_);
+  perception_.update(at_us, plant_, report_.output.pose.T_odom_body());
   for (const simulator::CarriedFrame& carried : bus_.take_carried()) {
     if (is_master_cycle(carried.frame)) master_heard_us_ = carried.time_us;
     monitor_.on_frame(carried);
