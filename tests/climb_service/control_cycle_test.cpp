@@ -136,6 +136,35 @@ TEST(ControlCycle, ResetConfiguresARestartedDriveAgain) {
   EXPECT_TRUE(bench.report.bus_faults.size == 0) << bench.problems();
 }
 
+// The same while disarmed: it cannot be armed, the reset heals it, nothing heals itself.
+TEST(ControlCycle, ResetWhileDisarmedBringsTheBusBack) {
+  CycleBench bench;
+  ASSERT_TRUE(bench.reach(ControllerState::kDisarmed));
+  bench.plant.reboot(3);
+  bench.run_s(4.0);
+  EXPECT_EQ(bench.state(), ControllerState::kDisarmed);
+  EXPECT_NE(bench.reason(), Fault::kNone) << bench.problems();
+  EXPECT_EQ(bench.order(Order::kArm), CommandVerdict::kNotNow);
+  EXPECT_EQ(bench.order(Order::kReset), CommandVerdict::kAccepted) << bench.problems();
+  EXPECT_EQ(bench.reason(), Fault::kNone) << bench.problems();
+  EXPECT_TRUE(arm(bench)) << bench.problems();
+  EXPECT_EQ(bench.violations(), "");
+}
+
+// An E-stop that is pressed at power-up stops a bus that was never configured; released and reset,
+// the robot comes up as always.
+TEST(ControlCycle, EstopAtPowerUp) {
+  CycleBench bench;
+  bench.plant.press_estop(true);
+  bench.run_s(3.0);
+  EXPECT_EQ(bench.state(), ControllerState::kEstop);
+  bench.plant.press_estop(false);
+  bench.run_s(0.5);
+  EXPECT_EQ(bench.order(Order::kReset), CommandVerdict::kAccepted) << bench.problems();
+  EXPECT_TRUE(arm(bench)) << bench.problems();
+  EXPECT_EQ(bench.violations(), "");
+}
+
 // Before anything was armed the bus is brought up again and again, without being asked.
 TEST(ControlCycle, WaitsForDrivesThatComeLate) {
   CycleBench bench;

@@ -199,6 +199,24 @@ TEST_F(ClimbProcess, KilledControllerLeavesHoldingDrives) {
   })) << climber->output();
 }
 
+// Stopped in its tracks for half a second, as by a debugger: the drives have stopped by themselves;
+// going on it finds that out and stays in FAULT_HOLD.
+TEST_F(ClimbProcess, HungControllerStaysStopped) {
+  const auto climber = controller(can());
+  ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
+  ASSERT_EQ(command({"arm", "--wait", "ARMING"}), 0) << said_;
+  ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.has_targets != 0; }));
+  climber->signal(SIGSTOP);
+  usleep(600'000);
+  EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+  climber->signal(SIGCONT);
+  ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.state == m.STATE_FAULT_HOLD; }))
+      << climber->output();
+  EXPECT_GT(now_.overruns, 0);
+  usleep(300'000);
+  EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+}
+
 // The E-stop line stops everything and stays latched after its release until the operator's reset;
 // the last bus frames are written.
 TEST_F(ClimbProcess, StopsByTheLine) {
@@ -244,6 +262,23 @@ TEST_F(ClimbProcess, StartsOnlyWithDevices) {
   ASSERT_EQ(shipped.wait(10s), 0) << shipped.output();
   ASSERT_EQ(built_in.wait(10s), 0);
   EXPECT_EQ(shipped.output(), built_in.output());
+}
+
+// A wrong value ends the start with 2 and the key's name, before any device is touched.
+TEST_F(ClimbProcess, WrongConfiguration) {
+  const std::pair<const char*, const char*> wrong[] = {
+      {"climb.no_such_key=1", "climb.no_such_key"},
+      {"climb.power_off_hold=rope", "power_off_hold"},
+      {"climb.can.accepted_objects=605E", "accepted_objects"},
+      {"climb.period_s=0.5", "period_s"},
+      {"climb.drives.node_id=[1,1,3,4,5,6,7,8,9,10,11,12,13,14,15,16]", "node_id"},
+      {"climb.robot.knee_bend.max_rad=0.1", "knee_bend"},
+      {"climb.lines.chip=''", "chip"}};
+  for (const auto& [setting, culprit] : wrong) {
+    ChildProcess child(kBin + "/climb_controller", {"--check", "--set", setting});
+    EXPECT_EQ(child.wait(10s), 2) << setting;
+    EXPECT_THAT(child.output(), HasSubstr(culprit)) << setting;
+  }
 }
 
 }  // namespace
