@@ -59,7 +59,10 @@ class LadderStand {
     hidden_[leg] = held_rung_[leg];
     held_rung_[leg] = 0;
   }
-  void mend_rungs() { broken_.clear(); }
+  void mend_rungs() {
+    broken_.clear();
+    hidden_ = {};
+  }
   /// One more rung, numbered on; heights count in rung distances from where rung 0 would be.
   void add_rung_at(double place) {
     add_rung(static_cast<int>(rungs.size()) + 1, place);
