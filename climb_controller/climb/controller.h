@@ -66,6 +66,7 @@ class Controller {
   void boot(const ControllerInput& input);
   void work_arming(const ControllerInput& input);
   void work_climbing(const ControllerInput& input);
+  std::optional<Leg> next_to_grasp() const;
   void start_following(const ControllerInput& input);
   PerLeg<bool> claws_round_rungs() const;
   bool end_step();

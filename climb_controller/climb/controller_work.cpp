@@ -49,11 +49,11 @@ void Controller::work_arming(const ControllerInput& input) {
   for (const LimbCycle& limb : limbs_) {  // claws that held before press again first
     if (limb.state() == LimbState::kLoaded && !limb.confirmation().holds()) return;
   }
-  for (const Leg leg : kLegs) {
-    if (limbs_[leg].state() == LimbState::kLoaded) continue;
-    plan_ = planner_.dock(leg, limbs_[leg].lost_rung_id(), robot_now(input), ladder_of(input));
+  if (const std::optional<Leg> leg = next_to_grasp()) {
+    LimbCycle& limb = limbs_[*leg];
+    plan_ = planner_.dock(*leg, limb.lost_rung_id(), robot_now(input), ladder_of(input));
     if (plan_.ready)
-      limbs_[leg].begin(plan_.goal);
+      limb.begin(plan_.goal);
     else if (in_state_s_ > params_.dock_timeout_s)
       take(E::kArmingRefused);
     return;
@@ -61,6 +61,18 @@ void Controller::work_arming(const ControllerInput& input) {
   if (!hangs_) planner_.remember_dock(robot_now(input));
   hangs_ = true;
   take(E::kArmed);
+}
+
+std::optional<Leg> Controller::next_to_grasp() const {
+  // A claw that is closed round something comes first: it only has to be verified.
+  for (const bool closed : {true, false}) {
+    for (const Leg leg : kLegs) {
+      const LimbCycle& limb = limbs_[leg];
+      const bool is_free = limb.state() != LimbState::kLoaded;
+      if (is_free && limb.confirmation().witness().jaw == closed) return leg;
+    }
+  }
+  return std::nullopt;
 }
 
 void Controller::start_following(const ControllerInput& input) {
@@ -73,14 +85,17 @@ void Controller::start_following(const ControllerInput& input) {
   }
   const PerLeg<bool> holds = claws_round_rungs();
   const auto num_held = std::count(holds.begin(), holds.end(), true);
+  const auto num_closed = std::count_if(limbs_.begin(), limbs_.end(), [](const LimbCycle& limb) {
+    return limb.confirmation().witness().jaw;
+  });
   // On the ladder the others carry what is not held; in the dock none, or the stand does.
-  if (hangs_ && num_held > 0 && num_held < 3) {
+  if (hangs_ && num_closed > 0 && num_closed < 3) {
     take(E::kArmingRefused);
     return;
   }
   for (const Leg leg : kLegs) limbs_[leg].reset(limb_input(input, leg), holds[leg]);
   watch_.arm(input);
-  hangs_ = num_held >= 3;  // on the ladder again, not in the dock
+  hangs_ = num_held >= 3 || (hangs_ && num_closed >= 3);  // on the ladder again, not in the dock
   torque_part_ = hangs_ ? 1.0 : 0.0;
   following_ = began_now_ = true;
 }

@@ -52,7 +52,7 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   if (state_ == S::kLoaded) return take(LimbEvent::kLift);
   // Where it stands after a reset: round a rung perhaps, then it is verified there; half closed,
   // then it opens before it moves.
-  if (!is_open(input_)) state_ = confirmation_.witness().touch ? S::kClosing : S::kRegrasp;
+  if (!is_open(input_)) state_ = confirmation_.witness().jaw ? S::kClosing : S::kRegrasp;
   enter(S::kPregrasp);
   return true;
 }

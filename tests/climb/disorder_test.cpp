@@ -97,10 +97,10 @@ class DisorderTest : public climb_tests::ControllerFixture {
   double in_state_s_ = 0.0;
 };
 
-// 150 half minutes of it; then everything is mended, and hold, reset and arm lead to a state of
+// 130 half minutes of it; then everything is mended, and hold, reset and arm lead to a state of
 // rest.
 TEST_F(DisorderTest, KeepsItsInvariantsAndLeadsOut) {
-  for (std::uint64_t seed = 0; seed < 150; ++seed) {
+  for (std::uint64_t seed = 0; seed < 130; ++seed) {
     SCOPED_TRACE(seed);
     base::Rng rng(seed);
     start_anew();
