@@ -198,6 +198,8 @@ def run(argv):
     options.out.parent.mkdir(parents=True, exist_ok=True)
     with open(options.out, "wb") as file:
         num_events = write_log(file, messages, options, heads, up_body)
+    if len(heads) == 1 and options.frames == 1:
+        print("note: one frame of one head makes no cloud, the first one waits for more: see --frames")
     print(f"written: {options.out}, {num_events} events")
 
 

@@ -19,6 +19,7 @@ void read(ConfigTable table, tof::FilterParams& params) {
 
 void read(ConfigTable table, tof::HeadParams& params) {
   table.read("period_s", params.period_s);
+  table.read("awaited_at_start", params.awaited_at_start);
   table.read("dead_periods", params.dead_periods);
   table.read("backward_reset_s", params.backward_reset_s);
   table.read("forward_reset_s", params.forward_reset_s);

@@ -69,12 +69,15 @@ void HeadSchedule::bury_silent_heads() {
 
 bool HeadSchedule::is_complete() const {
   bool is_any = false;
-  for (const Head& head : heads_) {
-    if (head.state == HeadState::kLive && !head.is_waiting) return false;
+  for (int h = 0; h < kNumHeads; ++h) {
+    const Head& head = heads_[h];
+    const bool is_awaited =
+        head.state == HeadState::kLive ||
+        (head.state == HeadState::kUnknown && !had_cloud_ && h < params_.awaited_at_start);
+    if (is_awaited && !head.is_waiting) return false;
     is_any |= head.is_waiting;
   }
-  const bool lacks_head_0 = !had_cloud_ && heads_[0].state == HeadState::kUnknown;
-  return is_any && !lacks_head_0;
+  return is_any;
 }
 
 void HeadSchedule::take_all() {

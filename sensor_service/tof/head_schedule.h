@@ -2,7 +2,8 @@
 // When a cloud is due: the emission rule, on times and sequence numbers alone.
 // A cloud is due when every live head has delivered once since the last cloud, or when a head
 // delivers its second frame (that frame then opens the next cloud, so every frame enters exactly
-// one). Before the first cloud head 0 counts as live: it defines x of odom.
+// one). Before the first cloud those awaited at the start count as live: head 0 defines x of odom,
+// and what learns from clouds begins with all there is in view.
 #pragma once
 
 #include <array>

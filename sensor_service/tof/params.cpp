@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tof/params.h"
 
+#include "tof/depth_frame.h"
+
 namespace tof {
 namespace {
 
@@ -21,6 +23,7 @@ std::string check_filter(const FilterParams& p) {
 
 std::string check_heads(const HeadParams& p) {
   if (!within(p.period_s, 0.005, 1.0)) return "heads.period_s must be 0.005..1";
+  if (!within(p.awaited_at_start, 1.0, kNumHeads)) return "heads.awaited_at_start must be 1..4";
   if (!within(p.dead_periods, 1.5, 100.0)) return "heads.dead_periods must be 1.5..100";
   if (!within(p.backward_reset_s, 0.0, 3600.0)) return "heads.backward_reset_s must be 0..3600";
   if (!within(p.forward_reset_s, 0.1, 1e6)) return "heads.forward_reset_s must be 0.1..1e6";

@@ -23,6 +23,8 @@ struct FilterParams {
 /// When a head counts as alive, and what a new recording is.
 struct HeadParams {
   double period_s = 1.0 / 15.0;  ///< of a head, until it is measured
+  int awaited_at_start = 4;      ///< 1..4: heads 0 to this - 1 are in the first cloud, unless one
+                                 ///< delivers twice before all have
   double dead_periods = 3.0;     ///< silence, in periods of the head, after which it is dead
   double backward_reset_s =
       1.0;  ///< time going back by more is a new recording; less is a late frame

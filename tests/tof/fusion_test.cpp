@@ -18,6 +18,13 @@ using tof_test::kPeriod_us;
 using tof_test::kStart_us;
 using tof_test::turn;
 
+/// The first cloud waits for head 0 alone.
+tof::TofParams one_head() {
+  tof::TofParams params;
+  params.heads.awaited_at_start = 1;
+  return params;
+}
+
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
 void add_rest(tof::Fusion& fusion, std::int64_t utime_us, const Eigen::Vector3d& up_body = kUp) {
@@ -30,7 +37,7 @@ Eigen::Vector3d point(const tof::Cloud& cloud, std::size_t i) {
 
 // A frame that is not one is refused and counted, and the next good one is served.
 TEST(Fusion, UnsoundFramesLeaveNoTrace) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder;
   auto bad = builder.view(0, kStart_us, 0);
   bad.intrinsics.fx_px = std::numeric_limits<double>::quiet_NaN();
@@ -45,7 +52,7 @@ TEST(Fusion, UnsoundFramesLeaveNoTrace) {
 
 // A head that sees nothing still gives a cloud: empty, with its time and position.
 TEST(Fusion, NothingSeenIsACloudWithoutPoints) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(8, 8, 0);
   builder.frame.T_body_head.p_m = {0.3, 0.1, 0.2};
   add_rest(fusion, kStart_us);
@@ -63,7 +70,7 @@ TEST(Fusion, NothingSeenIsACloudWithoutPoints) {
 
 // Without inertial unit and odometry the points come in body axes, and the cloud says so.
 TEST(Fusion, NeitherGravityNorOdometry) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   const auto result = fusion.add_frame(builder.view(0, kStart_us, 0));
   ASSERT_EQ(result.clouds.size(), 1U);
@@ -82,7 +89,7 @@ TEST(Fusion, GravityLevelsAnyAttitude) {
     if (trial == 1) q_world_body = turn(M_PI, Eigen::Vector3d::UnitX());
     FrameBuilder builder(3, 3, 1000);
     builder.frame.T_body_head.q = turn(0.5, Eigen::Vector3d::UnitZ()) * tof_test::looking_ahead();
-    tof::Fusion fusion{tof::TofParams{}};
+    tof::Fusion fusion{one_head()};
     add_rest(fusion, kStart_us, q_world_body.inverse() * kUp);
     const auto result = fusion.add_frame(builder.view(0, kStart_us, 0));
     ASSERT_EQ(result.clouds.size(), 1U);
@@ -101,7 +108,7 @@ TEST(Fusion, GravityLevelsAnyAttitude) {
 
 // Odometry wins over gravity, and each head is placed with the pose of its own time.
 TEST(Fusion, EachHeadAtItsOwnTime) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   add_rest(fusion, kStart_us);
   fusion.add_frame(builder.view(0, kStart_us - kPeriod_us, 0));
@@ -129,7 +136,7 @@ TEST(Fusion, EachHeadAtItsOwnTime) {
 
 // Odometry that falls silent leaves the body where it was last seen; odom never jumps back to it.
 TEST(Fusion, SilentOdometryHoldsTheLastPose) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   tof::Pose pose;
   pose.p_m = {5.0, 1.0, 2.0};
@@ -143,7 +150,7 @@ TEST(Fusion, SilentOdometryHoldsTheLastPose) {
 
 // A second frame may close one cloud and complete the next.
 TEST(Fusion, TwoCloudsAtOnce) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   EXPECT_TRUE(fusion.add_frame(builder.view(2, kStart_us, 0)).clouds.empty());
   const auto result = fusion.add_frame(builder.view(2, kStart_us + kPeriod_us, 1));
@@ -154,7 +161,7 @@ TEST(Fusion, TwoCloudsAtOnce) {
 
 // utime of clouds only ever grows: a set with nothing newer is dropped and counted.
 TEST(Fusion, CloudTimesAscend) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   fusion.add_frame(builder.view(0, kStart_us + 100'000, 0));
   fusion.add_frame(builder.view(1, kStart_us + 20'000, 0));
@@ -165,7 +172,7 @@ TEST(Fusion, CloudTimesAscend) {
 
 // Time that goes back is a new recording: it works like the first, heading included.
 TEST(Fusion, TimeBackwardsIsANewRecording) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder ahead(3, 3, 1000);
   FrameBuilder aside(3, 3, 1000);
   aside.frame.T_body_head.q = turn(1.0, kUp) * tof_test::looking_ahead();
@@ -182,7 +189,7 @@ TEST(Fusion, TimeBackwardsIsANewRecording) {
 
 // So is time that jumps ahead; a head that was dead for long while others lived is not.
 TEST(Fusion, TimeAheadIsANewRecordingUnlessOthersKeptGoing) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   fusion.add_frame(builder.view(0, kStart_us, 0));
   for (int second = 0; second < 30; ++second) add_rest(fusion, kStart_us + 1'000'000 * second);
@@ -194,7 +201,7 @@ TEST(Fusion, TimeAheadIsANewRecordingUnlessOthersKeptGoing) {
 
 // One stamp of nonsense costs two resets and nothing more.
 TEST(Fusion, OneCorruptStamp) {
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   FrameBuilder builder(3, 3, 1000);
   fusion.add_frame(builder.view(0, kStart_us, 0));
   fusion.add_frame(builder.view(0, std::numeric_limits<std::int64_t>::max(), 1));
@@ -207,7 +214,7 @@ TEST(Fusion, OneCorruptStamp) {
 // The bound holds for every size, the points are spread evenly over the heads and their images.
 TEST(Fusion, CloudsAreBoundedEvenly) {
   for (const int max_points : {1, 2, 999, 1000, 1001, 3199, 3200, 3201, 5000}) {
-    tof::TofParams params;
+    tof::TofParams params = one_head();
     params.max_points = max_points;
     tof::Fusion fusion(params);
     FrameBuilder builder(40, 40, 1000);
@@ -228,7 +235,7 @@ TEST(Fusion, SameInputsSameBits) {
   FrameBuilder builder(64, 48, 1000);
   for (auto& d : builder.depth_mm) d = static_cast<std::int16_t>(980 + rng.below(40));
   builder.frame.depth_kind = tof::DepthKind::kRadial;
-  tof::TofParams params;
+  tof::TofParams params = one_head();
   params.max_points = 1000;
   tof::Fusion used(params);
   FrameBuilder other(100, 80, 2000);
@@ -253,7 +260,7 @@ TEST(Fusion, BitsAreTheSameEverywhere) {
   for (auto& d : builder.depth_mm) d = static_cast<std::int16_t>(1000 + rng.below(60));
   builder.frame.depth_kind = tof::DepthKind::kRadial;
   builder.frame.intrinsics = {186.4, 206.4, 111.5, 85.0};
-  tof::Fusion fusion{tof::TofParams{}};
+  tof::Fusion fusion{one_head()};
   std::uint64_t hash = 1469598103934665603ULL;  // FNV-1a
   for (int i = 0; i < 6; ++i) {
     fusion.add_imu({kStart_us + kPeriod_us * i,

@@ -45,6 +45,12 @@ std::vector<std::string> run(tof::HeadSchedule& schedule, const std::vector<Inpu
   return words;
 }
 
+tof::HeadParams awaiting(int num_heads) {
+  tof::HeadParams params;
+  params.awaited_at_start = num_heads;
+  return params;
+}
+
 struct Row {
   const char* name;
   std::vector<Input> inputs;
@@ -107,14 +113,28 @@ const Row kTable[] = {
 // Each row of the table.
 TEST(HeadSchedule, EmissionRule) {
   for (const Row& row : kTable) {
-    tof::HeadSchedule schedule{tof::HeadParams{}};
+    tof::HeadSchedule schedule(awaiting(1));
     EXPECT_EQ(run(schedule, row.inputs), row.expected) << row.name;
   }
 }
 
+// Heads that are awaited at the start are in the first cloud; one that never comes holds it up for
+// one period only.
+TEST(HeadSchedule, TheFirstCloudIsWhole) {
+  using Words = std::vector<std::string>;
+  tof::HeadSchedule whole(awaiting(4));
+  EXPECT_EQ(run(whole, {{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {3, 3, 0}, {0, 4, 1}}),
+            (Words{"-", "-", "-", "0123", "-"}));
+  tof::HeadSchedule lacking(awaiting(4));
+  EXPECT_EQ(run(lacking, {{0, 0, 0}, {1, 1, 0}, {3, 3, 0}, {0, 4, 1}, {1, 5, 1}, {3, 7, 1}}),
+            (Words{"-", "-", "-", "013", "-", "013"}));
+  tof::HeadSchedule alone(awaiting(4));
+  EXPECT_EQ(run(alone, {{0, 0, 0}, {0, 4, 1}, {0, 8, 2}}), (Words{"-", "0+0", "0"}));
+}
+
 // Nothing is due before the first frame, and no head is known.
 TEST(HeadSchedule, Empty) {
-  tof::HeadSchedule schedule{tof::HeadParams{}};
+  tof::HeadSchedule schedule(awaiting(1));
   EXPECT_FALSE(schedule.is_complete());
   for (int h = 0; h < tof::kNumHeads; ++h) {
     EXPECT_EQ(schedule.state(h), tof::HeadState::kUnknown);
@@ -123,7 +143,7 @@ TEST(HeadSchedule, Empty) {
 
 // Gaps, duplicates and late frames are counted; a corrupt number is not millions of losses.
 TEST(HeadSchedule, Counts) {
-  tof::HeadSchedule schedule{tof::HeadParams{}};
+  tof::HeadSchedule schedule(awaiting(1));
   run(schedule, {{0, 0, 0}, {0, 4, 1}, {0, 16, 4}, {0, 16, 4}, {0, 15, 5}, {0, 20, 5}});
   EXPECT_EQ(schedule.counters(0).accepted, 4);
   EXPECT_EQ(schedule.counters(0).lost, 2);
@@ -136,7 +156,7 @@ TEST(HeadSchedule, Counts) {
 // The period of each head is learnt, also through losses; a slow head is not called dead for being
 // slow.
 TEST(HeadSchedule, PeriodIsMeasuredPerHead) {
-  tof::HeadSchedule schedule{tof::HeadParams{}};
+  tof::HeadSchedule schedule(awaiting(1));
   std::int64_t seq = 0;
   for (int i = 0; i < 60; ++i) {
     seq += 1 + i % 2;  // every third frame is lost on the way
@@ -153,7 +173,7 @@ TEST(HeadSchedule, PeriodIsMeasuredPerHead) {
 
 // A new recording forgets the heads and keeps the counts.
 TEST(HeadSchedule, Reset) {
-  tof::HeadSchedule schedule{tof::HeadParams{}};
+  tof::HeadSchedule schedule(awaiting(1));
   run(schedule, {{0, 100, 7}, {1, 101, 7}});
   schedule.reset();
   EXPECT_EQ(schedule.state(0), tof::HeadState::kUnknown);

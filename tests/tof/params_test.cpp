@@ -29,6 +29,7 @@ TEST(TofParams, FaultsNameTheField) {
       {"filter.flying_step_ratio", [](auto& p) { p.filter.flying_step_ratio = 0.5; }},
       {"filter.white_half_confidence_m", [](auto& p) { p.filter.white_half_confidence_m = kNaN; }},
       {"heads.period_s", [](auto& p) { p.heads.period_s = 0.0; }},
+      {"heads.awaited_at_start", [](auto& p) { p.heads.awaited_at_start = 0; }},
       {"heads.dead_periods", [](auto& p) { p.heads.dead_periods = 1.0; }},
       {"heads.backward_reset_s", [](auto& p) { p.heads.backward_reset_s = -1.0; }},
       {"heads.forward_reset_s", [](auto& p) { p.heads.forward_reset_s = kNaN; }},
