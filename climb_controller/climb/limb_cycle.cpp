@@ -113,11 +113,13 @@ void LimbCycle::enter(LimbState from) {
     case S::kClosing:
       if (from == S::kReleasing) stay_home();  // opened a little and closed again
       if (is_first_try()) spent_s_ = 0.0;
+      torques_before_Nm_ = input_.torques_Nm;
       jaw_goal_rad_ = claw_.closed_rad;
       return;
     case S::kVerify:
       pulled_from_m_ = input_.T_odom_body * kinematics_.foot_m(leg_, input_.angles_rad);
-      torques_before_Nm_ = input_.torques_Nm;
+      // What the closing jaw already draws on the rung counts: it adds to the pull.
+      if (from != S::kClosing) torques_before_Nm_ = input_.torques_Nm;
       return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m),
                        motion_.pull_test_m * 1.875 / motion_.pull_s);
     case S::kLoading:

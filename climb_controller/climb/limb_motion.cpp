@@ -88,7 +88,7 @@ bool LimbCycle::is_open(const LimbInput& input) const {
 }
 
 double LimbCycle::pull_N(const LimbInput& input) const {
-  // tau = -J^T f of the rung on the foot: the change since the pull began.
+  // tau = -J^T f of the rung on the foot: the change since the claw began to close.
   const Eigen::Matrix3d J = kinematics_.jacobian(leg_, input.angles_rad);
   const LegAngles change_Nm = input.torques_Nm - torques_before_Nm_;
   return (J.transpose().inverse() * change_Nm).norm();
