@@ -15,15 +15,17 @@ if(TARGET climb_box)
   hardware_test(hardware_climb_test SOURCES climb_test.cpp LINK hardware_kernel_box test_support TIMEOUT 240)
   target_compile_definitions(hardware_climb_test
                              PRIVATE LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/climb_in_process.candump")
-
-  add_executable(ladder_fault_rows fault_rows.cpp)
-  target_link_libraries(ladder_fault_rows PRIVATE hardware_kernel_box CLI11::CLI11 ladder_options)
-  set_target_properties(ladder_fault_rows PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests/bin")
 endif()
-if(TARGET climb_controller_main AND TARGET ladder_plant_main)
+if(TARGET climb_box AND TARGET climb_controller_main)
   hardware_test(hardware_climb_process_test SOURCES climb_process_test.cpp LINK ladder_runtime test_support TIMEOUT 300)
   target_compile_definitions(
     hardware_climb_process_test PRIVATE LADDER_BIN_DIR="${PROJECT_BINARY_DIR}/bin"
                                         LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/climb.candump")
   add_dependencies(hardware_climb_process_test climb_controller_main ladder_command_main ladder_plant_main)
+
+  add_executable(ladder_fault_rows fault_rows.cpp fault_rows_process.cpp)
+  target_link_libraries(ladder_fault_rows PRIVATE hardware_kernel_box ladder_runtime test_support CLI11::CLI11 ladder_options)
+  target_compile_definitions(ladder_fault_rows PRIVATE LADDER_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
+  set_target_properties(ladder_fault_rows PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests/bin")
+  add_dependencies(ladder_fault_rows climb_controller_main ladder_command_main ladder_plant_main)
 endif()

@@ -5,6 +5,8 @@
 // emulated machine; where it must fall silent, when the plant heard no frame of it after that.
 // Times are of the guest's clock. The other rows, all states and exact bounds: the drill in virtual
 // time.
+#include "tests/hardware/fault_rows.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -34,27 +36,25 @@ using climb::ControllerState;
 using climb::Order;
 
 constexpr const char* kInterface = "vcan0";
-constexpr int kAllowed_ms = 50;
 constexpr double kSilence_s = 0.2;  ///< listened for after a reaction that must be silent
 
 struct Row {
-  int number;
-  const char* what;
-  int bound_ms;
+  RowTitle title;
   climb::FaultFlags reasons;  ///< one of these is told
   bool silent;                ///< the controller may not send any more
 };
 
 constexpr Row kRows[] = {
-    {11, "a drive says nothing", 40, climb::flag(climb::Fault::kServoSilent), false},
-    {12, "a drive's heartbeat stops", 260, climb::flag(climb::Fault::kHeartbeatLost), false},
-    {13, "a drive reports a fault", 10, climb::flag(climb::Fault::kServoFault), false},
-    {16, "eleven odd frames in a second", 10,
-     climb::flag(climb::Fault::kMalformedFrames) | climb::flag(climb::Fault::kServoState), false},
-    {17, "bus-off", 10, climb::flag(climb::Fault::kBusDown), true},
-    {19, "interface down", 10, climb::flag(climb::Fault::kBusDown), true},
-    {23, "E-stop pressed, or its wire broken", 20, climb::flag(climb::Fault::kEstop), false},
-    {26, "a second master on the bus", 10, climb::flag(climb::Fault::kSecondController), true},
+    {{11, "a drive says nothing", 40}, climb::flag(climb::Fault::kServoSilent), false},
+    {{12, "a drive's heartbeat stops", 260}, climb::flag(climb::Fault::kHeartbeatLost), false},
+    {{13, "a drive reports a fault", 10}, climb::flag(climb::Fault::kServoFault), false},
+    {{16, "eleven odd frames in a second", 10},
+     climb::flag(climb::Fault::kMalformedFrames) | climb::flag(climb::Fault::kServoState),
+     false},
+    {{17, "bus-off", 10}, climb::flag(climb::Fault::kBusDown), true},
+    {{19, "interface down", 10}, climb::flag(climb::Fault::kBusDown), true},
+    {{23, "E-stop pressed, or its wire broken", 20}, climb::flag(climb::Fault::kEstop), false},
+    {{26, "a second master on the bus", 10}, climb::flag(climb::Fault::kSecondController), true},
 };
 
 void set_interface(bool up) {
@@ -110,20 +110,11 @@ class RowRunner {
  public:
   explicit RowRunner(std::string chip_folder) : chip_folder_(std::move(chip_folder)) {}
 
-  struct Result {
-    std::vector<double> times_ms;
-    int missed = 0;
-    std::int64_t violations = 0;
-    std::vector<std::string> complaints;
-  };
-
-  Result run(const Row& row, int repetitions) {
-    Result result;
+  RowResult run(const Row& row, int repetitions) {
+    RowResult result;
     for (int i = 0; i < repetitions; ++i) {
-      if (!bring_up(i)) {
-        ++result.missed;
-        result.complaints.push_back("did not come up: " + box_->problems());
-        box_.reset();
+      if (!bring_up_patiently(i, result)) {
+        result.miss("gave up");
         continue;
       }
       run_once(row, i, result);
@@ -135,7 +126,7 @@ class RowRunner {
   }
 
  private:
-  void forget(Result& result) {
+  void forget(RowResult& result) {
     result.violations += static_cast<std::int64_t>(box_->monitor().violations().size());
     for (const auto& violation : box_->monitor().violations()) {
       result.complaints.push_back(simulator::describe(violation));
@@ -143,7 +134,18 @@ class RowRunner {
     box_.reset();
   }
 
-  /// Every tenth time until four claws hold, else into the first claw's way to its rung.
+  /// On a machine that does something else meanwhile a drive may miss the controller's frames and
+  /// say so before the row has begun.
+  bool bring_up_patiently(int repetition, RowResult& result) {
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      if (bring_up(repetition)) return true;
+      result.complaints.push_back("did not come up: " + box_->problems());
+      box_.reset();
+    }
+    return false;
+  }
+
+  /// Every tenth time until four claws hold, else into a claw's way to its rung.
   bool bring_up(int repetition) {
     if (!box_) {
       KernelBoxParams params;
@@ -160,22 +162,21 @@ class RowRunner {
     const std::int64_t patient_us = box_->now_us() + 10'000'000;
     while (!box_->report().output.send && box_->now_us() < patient_us) box_->cycle();
     box_->run_s(rng_.uniform());
-    return box_->state() == ControllerState::kArming;
+    return box_->state() == ControllerState::kArming || box_->state() == ControllerState::kHold;
   }
 
-  void run_once(const Row& row, int repetition, Result& result) {
+  void run_once(const Row& row, int repetition, RowResult& result) {
     std::int64_t begun_us = 0;
     box_->at(box_->now_us() + 20'000 + static_cast<std::int64_t>(rng_.below(10'000)), [&] {
       begun_us = box_->now_us();
       begin(row, repetition);
     });
-    const double most_s = 1e-3 * (row.bound_ms + 1000);
+    const double most_s = 1e-3 * (row.title.bound_ms + 1000);
     const std::int64_t give_up_us = box_->now_us() + static_cast<std::int64_t>(1e6 * most_s);
     while (!is_latched(box_->state()) && box_->now_us() < give_up_us) box_->cycle();
     const std::int64_t reacted_us = box_->now_us();
     if (!is_latched(box_->state()) || (climb::flag(box_->reason()) & row.reasons) == 0) {
-      ++result.missed;
-      result.complaints.push_back(box_->problems());
+      result.miss(box_->problems());
       return;
     }
     double time_ms = 1e-3 * static_cast<double>(reacted_us - begun_us);
@@ -183,17 +184,13 @@ class RowRunner {
       box_->run_s(kSilence_s);
       time_ms = std::max(time_ms, 1e-3 * static_cast<double>(box_->master_heard_us() - begun_us));
     }
-    result.times_ms.push_back(time_ms);
-    if (time_ms > row.bound_ms + kAllowed_ms) {
-      ++result.missed;
-      result.complaints.push_back("late: " + std::to_string(time_ms) + " ms");
-    }
+    result.add(time_ms, row.title.bound_ms);
   }
 
   void begin(const Row& row, int repetition) {
     const int axis = repetition % simulator::kNumAxes;
     simulator::RobotPlant& plant = box_->plant();
-    switch (row.number) {
+    switch (row.title.number) {
       case 11:
         plant.drive(axis).faults.silent = true;
         return;
@@ -223,7 +220,7 @@ class RowRunner {
     plant.drive(axis).faults = {};
     plant.press_estop(false);
     plant.set_wire_fault(simulator::kEstopN, simulator::WireFault::kNone);
-    if (row.number == 19) set_interface(true);
+    if (row.title.number == 19) set_interface(true);
     box_->run_s(1.0);
   }
 
@@ -250,7 +247,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-std::string json_of(const Row& row, int cases, const RowRunner::Result& result) {
+std::string json_of(const RowTitle& row, int cases, const RowResult& result) {
   char head[300];
   const double worst_ms = result.times_ms.empty()
                               ? -1.0
@@ -271,40 +268,66 @@ std::string json_of(const Row& row, int cases, const RowRunner::Result& result) 
   return text + "]}";
 }
 
-int run(const std::vector<int>& wanted, int repetitions, const std::string& json_path) {
+class Report {
+ public:
+  void add(const RowTitle& title, int cases, const RowResult& result) {
+    const std::string line = json_of(title, cases, result);
+    std::printf("%s\n", line.c_str());
+    for (const std::string& complaint : result.complaints)
+      std::printf("    %s\n", complaint.c_str());
+    std::fflush(stdout);
+    rows_ += (rows_.empty() ? "" : ",\n") + line;
+    all_met_ = all_met_ && result.missed == 0;
+  }
+  bool all_met() const { return all_met_; }
+  bool write(const std::string& path) const {
+    std::FILE* file = std::fopen(path.c_str(), "w");
+    if (file == nullptr) return false;
+    std::fprintf(
+        file,
+        "{\"where\": \"vcan and gpio-sim in the machine of scripts/vm\", \"rows\": [\n%s\n]}\n",
+        rows_.c_str());
+    return std::fclose(file) == 0;
+  }
+
+ private:
+  std::string rows_;
+  bool all_met_ = true;
+};
+
+struct Options {
+  std::vector<int> rows;  ///< empty: all
+  int repetitions = 20;
+  std::string json_path;
+  std::string bin;
+
+  bool wants(int number) const {
+    return rows.empty() || std::find(rows.begin(), rows.end(), number) != rows.end();
+  }
+};
+
+int run(const Options& options) {
   const char* chip_folder = std::getenv("LADDER_GPIO_SIM");
   if (chip_folder == nullptr) {
     std::fprintf(stderr, "run it in the machine: scripts/vm --vcan 1 --gpio-sim -- ...\n");
     return 3;
   }
+  Report report;
   RowRunner runner(chip_folder);
-  std::string rows;
-  bool all_met = true;
   for (const Row& row : kRows) {
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), row.number) == wanted.end())
-      continue;
-    const RowRunner::Result result = runner.run(row, repetitions);
-    const std::string line = json_of(row, repetitions, result);
-    std::printf("%s\n", line.c_str());
-    for (const std::string& complaint : result.complaints)
-      std::printf("    %s\n", complaint.c_str());
-    std::fflush(stdout);
-    rows += (rows.empty() ? "" : ",\n") + line;
-    all_met = all_met && result.missed == 0;
+    if (!options.wants(row.title.number)) continue;
+    report.add(row.title, options.repetitions, runner.run(row, options.repetitions));
   }
-  if (!json_path.empty()) {
-    std::FILE* file = std::fopen(json_path.c_str(), "w");
-    if (file == nullptr) {
-      std::perror(json_path.c_str());
-      return 3;
-    }
-    std::fprintf(
-        file,
-        "{\"where\": \"vcan and gpio-sim in the machine of scripts/vm\", \"rows\": [\n%s\n]}\n",
-        rows.c_str());
-    std::fclose(file);
+  for (const RowTitle& row : process_rows()) {
+    if (!options.wants(row.number)) continue;
+    report.add(row, options.repetitions,
+               run_process_row(row.number, options.repetitions, options.bin, chip_folder));
   }
-  return all_met ? 0 : 1;
+  if (!options.json_path.empty() && !report.write(options.json_path)) {
+    std::perror(options.json_path.c_str());
+    return 3;
+  }
+  return report.all_met() ? 0 : 1;
 }
 
 }  // namespace
@@ -312,12 +335,11 @@ int run(const std::vector<int>& wanted, int repetitions, const std::string& json
 
 int main(int argc, char** argv) {
   CLI::App app("Rows of the fault table on kernel devices.", "ladder_fault_rows");
-  std::vector<int> rows;
-  int repetitions = 20;
-  std::string json_path;
-  app.add_option("--rows", rows, "only these")->delimiter(',');
-  app.add_option("--repeats", repetitions, "of each row");
-  app.add_option("--json", json_path, "write the results here");
+  hardware::Options options;
+  options.bin = LADDER_BIN_DIR;
+  app.add_option("--rows", options.rows, "only these")->delimiter(',');
+  app.add_option("--repeats", options.repetitions, "of each row");
+  app.add_option("--json", options.json_path, "write the results here");
   CLI11_PARSE(app, argc, argv);
-  return hardware::run(rows, repetitions, json_path);
+  return hardware::run(options);
 }
