@@ -217,8 +217,9 @@ std::optional<Emergency> decode_emergency(const CanFrame& frame) {
 }
 
 bool is_warning_code(std::uint16_t error_code) {
-  const int group = error_code >> 8;
-  return (group >= 0x31 && group <= 0x33) || (group >= 0x41 && group <= 0x43);
+  // Under-voltage of the mains or inside, excess temperature of the drive: it still works. The
+  // neighbours (over-voltage, excess temperature of the device) come with the fault state.
+  return error_code == 0x3120 || error_code == 0x3220 || error_code == 0x4310;
 }
 
 }  // namespace can::cia402
