@@ -228,7 +228,8 @@ void Drive::refresh_objects() {
   const double speed = params_.sign * motor_.velocity_rad_s() * params_.counts_per_rad;
   dictionary_.at(0x6041).value = status_word();
   dictionary_.at(0x6061).value = dictionary_.at(0x6060).value;
-  dictionary_.at(0x6064).value = static_cast<std::uint32_t>(counts(measured_rad()));
+  const double told_rad = measured_rad() + faults.encoder_offset_rad;
+  dictionary_.at(0x6064).value = static_cast<std::uint32_t>(counts(told_rad));
   dictionary_.at(0x606C).value = static_cast<std::uint32_t>(static_cast<std::int32_t>(speed));
   dictionary_.at(0x6077).value =
       static_cast<std::uint16_t>(static_cast<std::int16_t>(std::clamp(permille, -3e4, 3e4)));

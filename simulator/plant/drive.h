@@ -40,10 +40,11 @@ enum class NmtState : std::uint8_t { kBooting, kPreOperational, kOperational, kS
 
 /// Broken on purpose; see also Motor.
 struct DriveFaults {
-  bool silent = false;        ///< neither hears nor sends
-  bool no_heartbeat = false;  ///< but PDOs go on
-  bool wrong_length = false;  ///< TPDO1 one byte short
-  bool no_state = false;      ///< TPDO1 missing, the rest goes on
+  bool silent = false;              ///< neither hears nor sends
+  bool no_heartbeat = false;        ///< but PDOs go on
+  bool wrong_length = false;        ///< TPDO1 one byte short
+  bool no_state = false;            ///< TPDO1 missing, the rest goes on
+  double encoder_offset_rad = 0.0;  ///< the position told is off by so much
 };
 
 class Drive {
