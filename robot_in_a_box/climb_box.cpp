@@ -89,9 +89,7 @@ void ClimbBox::step() {
   inbox_.ladder_received_us = perception_.received_us();
   inbox_.command = command_;
   command_ = {};
-  inbox_.faults = flags_;
-  if (now_us_ - stepped_us_ > 4 * kCycle_us) inbox_.faults |= climb::flag(climb::Fault::kOverrun);
-  stepped_us_ = now_us_;
+  inbox_.faults = flags_ | clock_.begin(now_us_, now_us_ + slept_us_);
   cycle_.step(now_us_, inbox_, report_);
   tell_monitor();
   if (watcher_ != nullptr) watcher_->on_report(report_);
@@ -103,6 +101,9 @@ void ClimbBox::tell_monitor() {
     if (report_.order == climb::Order::kReset) monitor_.on_session(now_us_, SessionEvent::kReset);
   }
   told_seq_ = report_.order_seq;
+  // A reset is taken at once; its answer waits for the bus.
+  if (report_.is_resetting && !was_resetting_) monitor_.on_session(now_us_, SessionEvent::kReset);
+  was_resetting_ = report_.is_resetting;
   const ControllerState now = state();
   const bool came_down =
       now == ControllerState::kDisarmed &&

@@ -8,6 +8,7 @@
 
 #include "can/cia402_bus.h"
 #include "climb_controller/control_cycle.h"
+#include "climb_controller/cycle_clock.h"
 #include "climb_controller/drive_layout.h"
 #include "gpio/lines.h"
 #include "robot_in_a_box/memory_chip.h"
@@ -69,6 +70,7 @@ class ClimbBox {
   simulator::Monitor& monitor() { return monitor_; }
   const simulator::Monitor& monitor() const { return monitor_; }
   PerceivedLadder& perception() { return perception_; }
+  const PerceivedLadder& perception() const { return perception_; }
   MemoryChip& chip() { return chip_; }
   /// As the controller estimates it.
   Eigen::Isometry3d T_odom_body() const;
@@ -82,6 +84,7 @@ class ClimbBox {
   void hang(std::int64_t duration_us) { hung_until_us_ = now_us_ + duration_us; }
   void flag_fault(climb::Fault fault) { flags_ |= climb::flag(fault); }  ///< found by the service
   void clear_flag(climb::Fault fault) { flags_ &= ~climb::flag(fault); }
+  void sleep(std::int64_t duration_us) { slept_us_ += duration_us; }  ///< of the machine
   bool imu_silent = false;
   bool imu_falls = false;
   Eigen::Quaterniond imu_turn = Eigen::Quaterniond::Identity();  ///< added to what it tells
@@ -109,7 +112,8 @@ class ClimbBox {
   simulator::Monitor monitor_;
 
   std::int64_t now_us_ = 0;
-  std::int64_t stepped_us_ = 0;
+  std::int64_t slept_us_ = 0;
+  climb_controller::CycleClock clock_{climb_controller::CycleClockParams{}};
   std::int64_t hung_until_us_ = 0;
   std::int64_t imu_heard_us_ = -1'000'000'000;
   climb_controller::CycleInbox inbox_;
@@ -119,6 +123,7 @@ class ClimbBox {
   climb::FaultFlags flags_ = 0;
   climb::ControllerState told_state_ = climb::ControllerState::kBoot;
   std::int64_t told_seq_ = -1;
+  bool was_resetting_ = false;
   BoxWatcher* watcher_ = nullptr;
   std::uint64_t frame_hash_ = 0xCBF29CE484222325ULL;
 };

@@ -97,7 +97,9 @@ DrillScore run_drill(const DrillOptions& options) {
     Journey journey(tour, options.seed);
     while (journey.next()) {
       const Situation now = situation_of(journey.box);
-      if (!seen.insert(now).second) continue;
+      // A support lost a moment ago is about to stop everything for its own reason.
+      const bool is_passing = now.limb == climb::LimbState::kSupportLost && is_powered(now.state);
+      if (is_passing || !seen.insert(now).second) continue;
       if (++score.num_situations % options.every != 0) continue;
       for (std::size_t i = 0; i < score.rows.size(); ++i) {
         const DrillRow& row = drill_rows()[i];

@@ -130,7 +130,5 @@ class CaseRun : public BoxWatcher {
 
 /// The whole table: every row 1..32 at least once.
 std::span<const DrillRow> drill_rows();
-/// Rows that virtual time cannot play and where they are played instead; "" = played here.
-const char* played_elsewhere(int row_number);
 
 }  // namespace robot_in_a_box

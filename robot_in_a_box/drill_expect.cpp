@@ -61,17 +61,19 @@ bool holds_for(const CaseRun& run, climb::FaultFlags reasons) {
   const S before = run.before().state;
   if (is_unpowered(before)) return is_unpowered(run.state());
   if (is_latched(before)) return run.state() == before && run.reason() == run.reason_before();
+  if (before == S::kDisarming && run.state() == S::kDisarmed) return true;  // it was down first
   return run.state() == S::kFaultHold && (climb::flag(run.reason()) & reasons) != 0;
 }
 
 const char* harm_to_grasps(const CaseRun& run) {
   if (run.truth().fallen && !run.truth_before().fallen) return "the robot fell";
-  for (int leg = 0; leg < kNumLegs; ++leg) {
-    const auto index = static_cast<std::size_t>(leg);
-    const simulator::LegTruth& now = run.truth().legs[index];
-    if (leg == run.before().leg) continue;
-    const bool is_lost = run.truth_before().legs[index].holds && !now.holds;
-    if (is_lost && now.last_loss == simulator::LossCause::kOpened) return "a claw was opened";
+  // While it works the monitor says which claw may be opened; once it has stopped, none.
+  const bool has_stopped = is_latched(run.state()) && run.reacted_us() >= 0;
+  for (int leg = 0; leg < kNumLegs && has_stopped; ++leg) {
+    const simulator::LegTruth& now = run.truth().legs[static_cast<std::size_t>(leg)];
+    const bool was_opened = now.last_loss == simulator::LossCause::kOpened;
+    if (leg == run.before().leg) continue;  // it may be put down elsewhere, or try again
+    if (was_opened && now.lost_us > run.reacted_us() + kRunOut_us) return "a claw was opened";
   }
   return nullptr;
 }

@@ -32,7 +32,8 @@ std::uint32_t node(const CaseRun& run) {
   return static_cast<std::uint32_t>(run.some_axis()) + 1;
 }
 std::int64_t heard_since(const CaseRun& run, std::uint32_t id) {
-  return run.heard_us(id) >= run.injected_us() ? run.heard_us(id) : -1;
+  // What the plant says at once carries the time of its last step.
+  return run.heard_us(id) >= run.injected_us() - ClimbBox::kStep_us ? run.heard_us(id) : -1;
 }
 
 // --- rows 11 to 14: one servo --------------------------------------------------------------------
@@ -53,8 +54,9 @@ std::int64_t emergency_at(const CaseRun& run) {
 void reboot(CaseRun& run) {
   run.box().plant().reboot(run.some_axis());
 }
-std::int64_t heartbeat_at(const CaseRun& run) {
-  return heard_since(run, 0x700 + node(run));
+std::int64_t boot_up_at(const CaseRun& run) {
+  const std::int64_t heard_us = run.heard_us(0x700 + node(run));
+  return heard_us > run.injected_us() ? heard_us : -1;
 }
 void drop_to_pre_operational(CaseRun& run) {
   run.box().plant().drop_to_pre_operational(run.some_axis());
@@ -96,8 +98,7 @@ void turn_the_wrong_way(CaseRun& run) {
   run.box().plant().drive(moving_joint(run)).motor().reversed = true;
 }
 void jump(CaseRun& run) {
-  simulator::Motor& motor = run.box().plant().drive(moving_joint(run)).motor();
-  motor.set_position(motor.position_rad() + (motor.position_rad() > 0.0 ? -0.2 : 0.2));
+  run.box().plant().drive(moving_joint(run)).faults.encoder_offset_rad = 0.2;
 }
 std::int64_t is_behind_at(const CaseRun& run) {
   const int axis = moving_joint(run);
@@ -138,7 +139,7 @@ void send_some_junk(CaseRun& run) {
   send_junk(run, 9);
 }
 bool holds_for_junk(const CaseRun& run) {
-  return holds_for(run, flag(Fault::kMalformedFrames));
+  return holds_for(run, flag(Fault::kMalformedFrames) | flag(Fault::kServoState));
 }
 bool takes_no_notice(const CaseRun& run) {
   return run.since_us() >= 300'000;
@@ -219,11 +220,11 @@ constexpr std::array kRows = {
              2, raise_fault, emergency_at, holds_for_servo_fault, harm_but_for_axis, arm_meanwhile,
              kT_us, 600'000},
     DrillRow{14, "a", "servo restarts", "boot-up frame", "FAULT_HOLD, not enabled again",
-             after_boot, 2, reboot, heartbeat_at, holds_for_servo, harm_but_for_axis, arm_meanwhile,
+             after_boot, 2, reboot, boot_up_at, holds_for_servo, harm_but_for_axis, arm_meanwhile,
              kT_us, 600'000},
     DrillRow{14, "b", "servo leaves operational", "pre-operational", "FAULT_HOLD", after_boot, 2,
-             drop_to_pre_operational, heartbeat_at, holds_for_servo, harm_but_for_axis,
-             arm_meanwhile, kT_us, 600'000},
+             drop_to_pre_operational, nullptr, holds_for_servo, harm_but_for_axis, arm_meanwhile,
+             30'000 + kT_us, 600'000},
     DrillRow{14, "c", "servo leaves 0x27", "its torque is cut", "FAULT_HOLD", where_enabled, 2,
              cut_torque, state_at, holds_for_servo, harm_but_for_axis, nullptr, kT_us, 600'000},
     DrillRow{15, "a", "servo stuck", "a joint of the limb under way", "FAULT_HOLD",

@@ -167,21 +167,10 @@ bool lets_go(const CaseRun& run) {
   return at == LimbState::kRegrasp || at == LimbState::kSupportLost || at == LimbState::kPregrasp ||
          at == LimbState::kAbortReturn || run.state() == S::kFaultHold;
 }
+/// A fall may follow from physics; opened claws may not.
 const char* harm_by_unloading(const CaseRun& run) {
-  for (const climb::Leg leg : climb::kLegs) {
-    const bool other = leg != run.before().leg && !run.before().docked;
-    const LimbState at = run.limb(leg);
-    if (other && at != LimbState::kLoaded && at != LimbState::kSupportLost) {
-      return "another limb was unloaded";
-    }
-  }
-  for (int leg = 0; leg < simulator::kNumLegs; ++leg) {
-    const simulator::LegTruth& now = run.truth().legs[static_cast<std::size_t>(leg)];
-    const bool was = run.truth_before().legs[static_cast<std::size_t>(leg)].holds;
-    const bool opened = now.last_loss == simulator::LossCause::kOpened;
-    if (leg != run.before().leg && was && !now.holds && opened) return "a claw was opened";
-  }
-  return nullptr;
+  const char* harm = harm_to_grasps(run);
+  return run.truth().fallen ? nullptr : harm;
 }
 
 bool has_stance(const Situation& at) {
@@ -255,7 +244,75 @@ void break_and_close_touch(CaseRun& run) {
   close_touch(run);
 }
 
+// --- rows 2 and 3: messages that are not believed ------------------------------------------------
+
+template <Nonsense kKind>
+void speak_nonsense(CaseRun& run) {
+  run.memo = run.box().perception().received_us();
+  run.box().perception().nonsense = kKind;
+}
+bool anywhere(const Situation&) {
+  return true;
+}
+bool ignores_it(const CaseRun& run) {
+  return run.box().perception().received_us() == run.memo;
+}
+const char* harm_by_believing(const CaseRun& run) {
+  if (run.box().perception().received_us() != run.memo) return "a bad message was taken";
+  return harm_to_grasps(run);
+}
+/// Before the rungs have grown too old nothing may change for a bad message.
+const char* harm_by_change(const CaseRun& run) {
+  const bool stops = run.state() == S::kFaultHold || run.state() == S::kEstop;
+  if (stops && !is_latched(run.before().state)) return "stopped for a message";
+  return harm_by_believing(run);
+}
+
+template <Nonsense kKind>
+constexpr DrillRow nonsense_row(int number, const char* part, const char* injected) {
+  return {number,
+          part,
+          number == 2 ? "message out of order or time" : "message that makes no sense",
+          injected,
+          "dropped, nothing changes",
+          anywhere,
+          1,
+          speak_nonsense<kKind>,
+          nullptr,
+          ignores_it,
+          harm_by_change,
+          nullptr,
+          kT_us,
+          200'000};
+}
+template <Nonsense kKind>
+constexpr DrillRow long_nonsense_row(int number, const char* part, const char* injected) {
+  return {number,
+          part,
+          number == 2 ? "only messages out of order" : "only senseless messages",
+          injected,
+          "as row 1: PROTECTIVE_HOLD",
+          in_climbing,
+          1,
+          speak_nonsense<kKind>,
+          last_message_at,
+          is_protected,
+          harm_by_believing,
+          nullptr,
+          300'000 + kT_us,
+          800'000};
+}
+
 constexpr std::array kRows = {
+    nonsense_row<Nonsense::kRepeated>(2, "a", "repeated"),
+    nonsense_row<Nonsense::kReordered>(2, "b", "reordered"),
+    nonsense_row<Nonsense::kOld>(2, "c", "a second old"),
+    nonsense_row<Nonsense::kAhead>(2, "d", "an hour ahead"),
+    long_nonsense_row<Nonsense::kRepeated>(2, "e", "ten and more in a row"),
+    nonsense_row<Nonsense::kNotFinite>(3, "a", "NaN"),
+    nonsense_row<Nonsense::kHuge>(3, "b", "1e30 m"),
+    nonsense_row<Nonsense::kBadCount>(3, "c", "bad array length"),
+    long_nonsense_row<Nonsense::kNotFinite>(3, "d", "ten and more in a row"),
     DrillRow{1, "a", "perception silent", "no more messages", "PROTECTIVE_HOLD", in_climbing, 1,
              silence, last_message_at, is_protected, harm_but_loading, nullptr, 300'000 + kT_us,
              800'000},

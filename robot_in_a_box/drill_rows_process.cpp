@@ -3,6 +3,11 @@
 // orders, warnings.
 #include <array>
 #include <cmath>
+#include <csignal>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "robot_in_a_box/drill_expect.h"
 #include "robot_in_a_box/drill_tables.h"
@@ -90,7 +95,9 @@ std::int64_t woken_after_cycles_at(const CaseRun& run) {
   return woken_at(run, 50'000);
 }
 bool holds_for_overrun(const CaseRun& run) {
-  return holds_for(run, flag(Fault::kOverrun) | flag(Fault::kServoState));
+  // After a second the drives have told their own losses, which stand higher in the table.
+  return holds_for(run, flag(Fault::kOverrun) | flag(Fault::kServoState) |
+                            flag(Fault::kServoFault) | flag(Fault::kServoSilent));
 }
 bool takes_no_notice(const CaseRun& run) {
   return run.since_us() >= 300'000;
@@ -103,8 +110,10 @@ const char* harm_by_notice(const CaseRun& run) {
 void terminate(CaseRun& run) {
   run.box().flag_fault(Fault::kTerminate);
 }
+/// At rest, or stopped because the limb under way cannot finish for a trouble of its own.
 bool rests(const CaseRun& run) {
-  return run.state() == S::kHold;
+  const bool no_grasp = run.reason() == Fault::kGraspDisagrees || run.reason() == Fault::kNoGrasp;
+  return run.state() == S::kHold || (run.state() == S::kFaultHold && no_grasp);
 }
 /// The limb in the air finishes, none is lifted any more.
 const char* harm_by_next_step(const CaseRun& run) {
@@ -176,13 +185,13 @@ const char* harm_by_starting(const CaseRun& run) {
   return harm_to_grasps(run);
 }
 void reset_and_arm(CaseRun& run) {
-  if (run.since_us() == 100'000) run.box().order(Order::kReset);
-  if (run.since_us() > 200'000 && run.state() == S::kDisarmed && run.since_us() % 100'000 == 0) {
+  if (run.since_us() == 400'000) run.box().order(Order::kReset);
+  if (run.since_us() > 500'000 && run.state() == S::kDisarmed && run.since_us() % 100'000 == 0) {
     run.box().order(Order::kArm);
   }
 }
 std::int64_t reset_at(const CaseRun& run) {
-  return run.since_us() >= 100'000 ? run.injected_us() + 100'000 : -1;
+  return run.since_us() >= 400'000 ? run.injected_us() + 400'000 : -1;
 }
 bool follows_again(const CaseRun& run) {
   return run.report().bus_phase == can::BusPhase::kEnabled && run.state() != S::kEstop;
@@ -191,7 +200,7 @@ bool follows_again(const CaseRun& run) {
 // --- rows 25 and 26: clocks and rivals -----------------------------------------------------------
 
 void sleep_machine(CaseRun& run) {
-  run.box().flag_fault(Fault::kSuspended);
+  run.box().sleep(1'000'000);
 }
 bool holds_for_sleep(const CaseRun& run) {
   return holds_for(run, flag(Fault::kSuspended));
@@ -245,8 +254,7 @@ const char* harm_by_speaking(const CaseRun& run) {
 // --- row 27: IMU ---------------------------------------------------------------------------------
 
 bool is_armed(const Situation& at) {
-  return is_powered(at.state) || at.state == S::kFaultHold ||
-         (at.state == S::kArming && at.leg >= 0);
+  return is_powered(at.state) || (at.state == S::kArming && at.leg >= 0);
 }
 void tilt(CaseRun& run) {
   run.box().imu_turn = Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY());
@@ -293,8 +301,8 @@ void order_from_a_log(CaseRun& run) {
   run.box().order({any_order(run), run.box().session_id(), run.memo});
 }
 bool rejects_session(const CaseRun& run) {
-  return run.report().order_seq == run.memo &&
-         run.report().verdict == climb::CommandVerdict::kWrongSession;
+  const bool is_next = run.report().now_us > run.injected_us();
+  return is_next && run.report().verdict == climb::CommandVerdict::kWrongSession;
 }
 bool rejects_sequence(const CaseRun& run) {
   return run.report().order_seq == run.memo &&
@@ -324,6 +332,21 @@ void warn_of_heat(CaseRun& run) {
 void flood(CaseRun& run) {
   const std::uint64_t other = run.rng().next() & ~1ULL;
   run.box().order({any_order(run), other, static_cast<std::int64_t>(run.rng().next() >> 1)});
+}
+
+// --- row 32: the disk ----------------------------------------------------------------------------
+
+/// Of this copy of the process: whatever it writes fails.
+void fill_disk(CaseRun&) {
+  const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
+  if (full >= 0) {
+    dup2(full, STDOUT_FILENO);
+    dup2(full, STDERR_FILENO);
+    close(full);
+  }
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit none{0, 0};
+  setrlimit(RLIMIT_FSIZE, &none);
 }
 
 constexpr std::array kRows = {
@@ -357,8 +380,7 @@ constexpr std::array kRows = {
     DrillRow{24, "b", "E-stop released", "reset and armed", "enabled where it stands", in_estop, 1,
              release, reset_at, follows_again, harm_to_grasps, reset_and_arm, 6'000'000, 7'000'000},
     DrillRow{25, "", "machine slept", "BOOTTIME runs ahead", "FAULT_HOLD", everywhere, 1,
-             sleep_machine, nullptr, holds_for_sleep, harm_after_stop, arm_meanwhile, kT_us,
-             500'000},
+             sleep_machine, nullptr, holds_for_sleep, harm_after_stop, nullptr, kT_us, 500'000},
     DrillRow{26, "a", "second controller", "its SYNC", "silent, FAULT_HOLD", after_boot, 1,
              rival_sync, nullptr, gives_way, harm_when_rivals, nullptr, kT_us, 600'000},
     DrillRow{26, "b", "second controller", "its SDO", "silent, FAULT_HOLD", after_boot, 1,
@@ -393,6 +415,8 @@ constexpr std::array kRows = {
              900'000},
     DrillRow{31, "", "flood", "a wrong order each millisecond", "goes on", everywhere, 1, flood,
              nullptr, takes_no_notice, harm_by_notice, flood, 300'000, 400'000},
+    DrillRow{32, "", "disk full", "every write of the process fails", "goes on", everywhere, 1,
+             fill_disk, nullptr, takes_no_notice, harm_by_notice, nullptr, 300'000, 400'000},
 };
 
 }  // namespace

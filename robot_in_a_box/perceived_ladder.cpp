@@ -2,11 +2,14 @@
 #include "robot_in_a_box/perceived_ladder.h"
 
 #include <cmath>
+#include <limits>
 
 namespace robot_in_a_box {
 namespace {
 
-constexpr double kSigma_m = 0.002;
+constexpr std::int64_t kEpoch_us = 1'700'000'000'000'000;  ///< some day, for the wall clock
+constexpr std::int64_t kDelay_us = 20'000;                 ///< from measurement to message
+constexpr float kVariance_m2 = 4e-6F;
 
 Eigen::Vector3d within(double limit_m, base::Rng& rng) {
   Eigen::Vector3d error;
@@ -17,50 +20,109 @@ Eigen::Vector3d within(double limit_m, base::Rng& rng) {
 }  // namespace
 
 PerceivedLadder::PerceivedLadder(const PerceptionParams& params, std::uint64_t seed)
-    : params_(params), rng_(seed) {}
+    : params_(params), rng_(seed) {
+  newest_.reserve();
+}
 
-bool PerceivedLadder::update(std::int64_t now_us, const simulator::RobotPlant& plant,
+void PerceivedLadder::update(std::int64_t now_us, const simulator::RobotPlant& plant,
                              const Eigen::Isometry3d& T_odom_body) {
   const auto rungs = plant.world().rungs();
   while (bias_m_.size() < rungs.size()) bias_m_.push_back(within(params_.bias_m, rng_));
-  if (now_us < next_us_) return false;
+  if (now_us < next_us_) return;
   next_us_ += params_.period_us;
-  if (silent) return false;
-  rungs_.clear();
-  stretches_.clear();
-  const Eigen::Isometry3d T_odom_world = T_odom_body * plant.T_world_body().inverse();
+  if (silent) return;
+  tell(now_us, plant, T_odom_body * plant.T_world_body().inverse());
+  spoil();
+  inbox_.accept(message_, {now_us, kEpoch_us + now_us}, newest_);
+}
+
+void PerceivedLadder::tell(std::int64_t now_us, const simulator::RobotPlant& plant,
+                           const Eigen::Isometry3d& T_odom_world) {
+  message_ = {};
+  message_.utime = kEpoch_us + now_us - kDelay_us;
+  message_.seq = seq_++;
+  const auto rungs = plant.world().rungs();
   const double body_m = plant.T_world_body().translation().z();
   for (std::size_t i = 0; i < rungs.size(); ++i) {
     const double above_m = rungs[i].end0_m.z() - body_m;
     const bool is_seen =
         !rungs[i].broken && above_m >= seen_from_m && std::fabs(above_m) <= params_.range_m;
-    if (is_seen) tell(static_cast<int>(i), rungs[i], T_odom_world);
+    if (is_seen) add_rung(static_cast<int>(i), rungs[i], T_odom_world);
   }
-  received_us_ = now_us;
-  return true;
+  const bool is_ladder = message_.num_rungs >= 3;
+  message_.ladder_state = is_ladder ? message_.LADDER_CONFIRMED : message_.LADDER_NONE;
+  message_.spacing_m = is_ladder ? 0.3F : 0.0F;
 }
 
-void PerceivedLadder::tell(int index, const simulator::LadderRung& rung,
-                           const Eigen::Isometry3d& T_odom_world) {
+void PerceivedLadder::add_rung(int index, const simulator::LadderRung& rung,
+                               const Eigen::Isometry3d& T_odom_world) {
   const Eigen::Vector3d error_m =
       bias_m_[static_cast<std::size_t>(index)] + within(params_.jitter_m, rng_);
-  climb::RungView told;
-  told.id = index;
-  told.trusted = true;
-  told.damaged = index == withdrawn_rung;
-  told.confidence = 1.0;
-  told.end0_m = T_odom_world * rung.end1_m + error_m;  // the left end first
-  told.end1_m = T_odom_world * rung.end0_m + error_m;
-  told.radius_m = rung.radius_m;
-  told.covariance_m2 = kSigma_m * kSigma_m * Eigen::Matrix3d::Identity();
-  const double length_m = (told.end1_m - told.end0_m).norm();
-  stretches_.push_back(
-      {static_cast<int>(rungs_.size()), params_.stretch_end_m, length_m - params_.stretch_end_m});
-  rungs_.push_back(told);
+  const Eigen::Vector3f left_m = (T_odom_world * rung.end1_m + error_m).cast<float>();
+  const Eigen::Vector3f right_m = (T_odom_world * rung.end0_m + error_m).cast<float>();
+  const double length_m = (rung.end1_m - rung.end0_m).norm();
+  ladder_msgs::ladder_t& m = message_;
+  m.interval_rung.push_back(m.num_rungs);
+  m.interval_from_m.push_back(static_cast<float>(params_.stretch_end_m));
+  m.interval_to_m.push_back(static_cast<float>(length_m - params_.stretch_end_m));
+  m.interval_reason.push_back(static_cast<std::uint8_t>(m.REASON_NONE));
+  ++m.num_intervals;
+  m.rung_id.push_back(index);
+  m.rung_state.push_back(static_cast<std::uint8_t>(m.RUNG_TRUSTED));
+  m.rung_age.push_back(12);
+  m.rung_confidence.push_back(1.0F);
+  m.rung_evaluation.push_back(1.0F);
+  m.rung_inliers.push_back(20);
+  m.rung_outliers.push_back(0);
+  m.rung_x0_m.push_back(left_m.x());
+  m.rung_y0_m.push_back(left_m.y());
+  m.rung_z0_m.push_back(left_m.z());
+  m.rung_x1_m.push_back(right_m.x());
+  m.rung_y1_m.push_back(right_m.y());
+  m.rung_z1_m.push_back(right_m.z());
+  m.rung_radius_m.push_back(static_cast<float>(rung.radius_m));
+  m.rung_sag_m.push_back(0.0F);
+  m.rung_flags.push_back(index == withdrawn_rung ? m.FLAG_BENT : std::int16_t{0});
+  m.rung_cov_xx_m2.push_back(kVariance_m2);
+  m.rung_cov_xy_m2.push_back(0.0F);
+  m.rung_cov_xz_m2.push_back(0.0F);
+  m.rung_cov_yy_m2.push_back(kVariance_m2);
+  m.rung_cov_yz_m2.push_back(0.0F);
+  m.rung_cov_zz_m2.push_back(kVariance_m2);
+  ++m.num_rungs;
 }
 
-climb::LadderView PerceivedLadder::view() const {
-  return {rungs_, stretches_, 0.0, rungs_.size() >= 3};
+void PerceivedLadder::spoil() {
+  const bool has_rung = message_.num_rungs > 0;
+  switch (nonsense) {
+    case Nonsense::kNone:
+      good_seq_ = message_.seq;
+      good_utime_us_ = message_.utime;
+      return;
+    case Nonsense::kRepeated:
+      message_.seq = good_seq_;
+      message_.utime = good_utime_us_;
+      return;
+    case Nonsense::kReordered:
+      message_.seq = good_seq_ - 1;
+      message_.utime = good_utime_us_ - params_.period_us;
+      return;
+    case Nonsense::kOld:
+      message_.utime -= 1'000'000;
+      return;
+    case Nonsense::kAhead:
+      message_.utime += 3'600'000'000;
+      return;
+    case Nonsense::kNotFinite:
+      if (has_rung) message_.rung_z0_m[0] = std::numeric_limits<float>::quiet_NaN();
+      return;
+    case Nonsense::kHuge:
+      if (has_rung) message_.rung_x1_m[0] = 1e30F;
+      return;
+    case Nonsense::kBadCount:
+      message_.num_rungs += 5;
+      return;
+  }
 }
 
 }  // namespace robot_in_a_box

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rungs as perception would tell them, made from the plant's truth: at 15 Hz, in the odom frame,
-// with an error per rung that stays and one per message that does not. Heads see the ladder from
-// the body, so an error of the body's estimated pose goes into the rungs too, as it does in life.
-// No cameras, no cloud.
+// Rungs as perception would tell them, made from the plant's truth: messages at 15 Hz, in the odom
+// frame, with an error per rung that stays and one per message that does not. Heads see the ladder
+// from the body, so an error of the body's estimated pose goes into the rungs too, as it does in
+// life. They pass the controller's own inbox. Can be made to speak nonsense. No cameras, no cloud.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "base/rng.h"
-#include "climb/grasp_choice.h"
+#include "climb_controller/perception_inbox.h"
 #include "simulator/plant/robot_plant.h"
 
 namespace robot_in_a_box {
@@ -22,32 +22,52 @@ struct PerceptionParams {
   double stretch_end_m = 0.02;  ///< so far from either end a claw is kept
 };
 
+/// What is wrong with every message.
+enum class Nonsense : std::uint8_t {
+  kNone,
+  kRepeated,   ///< the same number and time again
+  kReordered,  ///< a number from before
+  kOld,        ///< measured a second ago
+  kAhead,      ///< measured in an hour, as after a step of the clock
+  kNotFinite,
+  kHuge,
+  kBadCount,  ///< more rungs announced than told
+};
+
 class PerceivedLadder {
  public:
   PerceivedLadder(const PerceptionParams& params, std::uint64_t seed);
 
-  /// The next message when one is due; false = nothing new. `T_odom_body` is what the controller
-  /// publishes.
-  bool update(std::int64_t now_us, const simulator::RobotPlant& plant,
+  /// Hands the next message over when one is due. `T_odom_body` is what the controller publishes.
+  void update(std::int64_t now_us, const simulator::RobotPlant& plant,
               const Eigen::Isometry3d& T_odom_body);
 
-  climb::LadderView view() const;
-  std::int64_t received_us() const { return received_us_; }
+  climb::LadderView view() const { return newest_.view(); }
+  std::int64_t received_us() const { return newest_.received_us; }
+  std::int64_t num_refused() const { return inbox_.num_refused(); }
 
   bool silent = false;        ///< perception has stopped
   int withdrawn_rung = -1;    ///< flagged as damaged from now on
   double seen_from_m = -1e9;  ///< rungs nearer than this above the body are not seen
+  Nonsense nonsense = Nonsense::kNone;
 
  private:
-  void tell(int index, const simulator::LadderRung& rung, const Eigen::Isometry3d& T_odom_world);
+  void tell(std::int64_t now_us, const simulator::RobotPlant& plant,
+            const Eigen::Isometry3d& T_odom_world);
+  void add_rung(int index, const simulator::LadderRung& rung,
+                const Eigen::Isometry3d& T_odom_world);
+  void spoil();
 
   PerceptionParams params_;
   base::Rng rng_;
   std::vector<Eigen::Vector3d> bias_m_;
-  std::vector<climb::RungView> rungs_;
-  std::vector<climb::StretchView> stretches_;
+  climb_controller::RungsInbox inbox_{climb_controller::PerceptionParams{}};
+  climb_controller::RungsSnapshot newest_;
+  ladder_msgs::ladder_t message_;
+  std::int64_t seq_ = 1;
+  std::int64_t good_seq_ = 0;  ///< of the last message that was as it should be
+  std::int64_t good_utime_us_ = 0;
   std::int64_t next_us_ = 0;
-  std::int64_t received_us_ = -1'000'000'000;
 };
 
 }  // namespace robot_in_a_box
