@@ -2,7 +2,7 @@
 # vcan0 and the controller pair of scripts/vm --vcan 1 --kvaser; the tests make further interfaces themselves.
 hardware_test(hardware_can_socket_test SOURCES can_socket_test.cpp LINK can_bus)
 if(TARGET ladder_plant_main)
-  hardware_test(hardware_can_master_test SOURCES can_master_test.cpp LINK can_bus test_support TIMEOUT 180)
+  hardware_test(hardware_can_master_test SOURCES can_master_test.cpp LINK can_bus test_support TIMEOUT 900)
   target_compile_definitions(
     hardware_can_master_test PRIVATE LADDER_PLANT_PROGRAM="$<TARGET_FILE:ladder_plant_main>"
                                      LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/power_up.candump")
@@ -12,12 +12,12 @@ endif()
 # The whole controller on kernel devices, in this process: tests and the drill's kernel rows run it.
 if(TARGET climb_box)
   ladder_library(hardware_kernel_box SOURCES kernel_box.cpp LINK climb_box)
-  hardware_test(hardware_climb_test SOURCES climb_test.cpp LINK hardware_kernel_box test_support TIMEOUT 240)
+  hardware_test(hardware_climb_test SOURCES climb_test.cpp LINK hardware_kernel_box test_support TIMEOUT 900)
   target_compile_definitions(hardware_climb_test
                              PRIVATE LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/climb_in_process.candump")
 endif()
 if(TARGET climb_box AND TARGET climb_controller_main)
-  hardware_test(hardware_climb_process_test SOURCES climb_process_test.cpp LINK ladder_runtime test_support TIMEOUT 300)
+  hardware_test(hardware_climb_process_test SOURCES climb_process_test.cpp LINK ladder_runtime test_support TIMEOUT 900)
   target_compile_definitions(
     hardware_climb_process_test PRIVATE LADDER_BIN_DIR="${PROJECT_BINARY_DIR}/bin"
                                         LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/climb.candump")
