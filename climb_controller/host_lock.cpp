@@ -30,8 +30,7 @@ HostLock::HostLock(const std::string& bus_name) {
   if (fd_ >= 0) ::close(fd_);
   if (error == EADDRINUSE) {
     throw runtime::DeviceError("another controller of this host has the servo bus " + bus_name +
-                               "; stop it first: systemctl stop ladder-climb, or look for "
-                               "climb_controller in `ss -xap`");
+                               "; stop it first: `ss -xap | grep ladder_climb` names it");
   }
   throw runtime::DeviceError("the servo bus " + bus_name +
                              " cannot be reserved: " + std::strerror(error));
