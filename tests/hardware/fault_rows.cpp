@@ -77,7 +77,10 @@ class Stranger {
     simulator::BusFrame frame;
     frame.id = id;
     frame.length = static_cast<std::uint8_t>(length);
+    const std::int64_t num_lost = port_.num_lost();
     port_.send(frame);
+    // A socket reports once that its interface had been down, instead of sending.
+    if (port_.num_lost() > num_lost) port_.send(frame);
   }
   void send_odd_frames() {
     for (int i = 0; i < 11; ++i) {
