@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 
 #include <poll.h>
 #include <pthread.h>
@@ -21,6 +23,7 @@ namespace climb_controller {
 namespace {
 
 constexpr int kPriority = 80;
+constexpr int kMessagePriority = 20;
 constexpr std::int64_t kImuSilent_us = 100'000;
 constexpr int kSettleSteps = 10;
 constexpr int kSettleStep_us = 5'000;
@@ -42,6 +45,16 @@ std::string lock_memory() {
   }
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "memory locked";
   return std::string("memory not locked (") + std::strerror(errno) + ")";
+}
+
+/// Every thread there is so far: the IMU comes through them, and its silence is a fault.
+void raise_message_threads() {
+  sched_param priority{};
+  priority.sched_priority = kMessagePriority;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    const pid_t id = std::atoi(thread.path().filename().c_str());
+    static_cast<void>(sched_setscheduler(id, SCHED_FIFO, &priority));
+  }
 }
 
 std::string take_priority(pthread_t thread) {
@@ -88,6 +101,7 @@ void ControlThread::start() {
   timer_fd_ = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
   if (timer_fd_ < 0) throw runtime::DeviceError("no timer from the kernel");
   const std::string memory = lock_memory();
+  raise_message_threads();
   thread_ = std::thread([this] { run(); });
   rights_ = take_priority(thread_.native_handle()) + ", " + memory;
 }

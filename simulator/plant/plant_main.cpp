@@ -15,6 +15,7 @@
 
 #include <CLI/CLI.hpp>
 #include <poll.h>
+#include <sched.h>
 
 #include "runtime/bus.h"
 #include "runtime/channels.h"
@@ -29,6 +30,7 @@ namespace {
 
 constexpr int kExitArguments = 2;
 constexpr int kExitNoDoor = 3;
+constexpr int kPriority = 40;
 constexpr std::int64_t kTruthPeriod_us = 100'000;
 constexpr std::int64_t kRungsPeriod_us = 66'667;
 constexpr std::int64_t kImuPeriod_us = 10'000;
@@ -128,6 +130,13 @@ std::int64_t utime_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              system_clock::now().time_since_epoch())
       .count();
+}
+
+/// Drives do not wait for other programs: real-time where permitted, below the controller's.
+void stand_for_hardware() {
+  sched_param priority{};
+  priority.sched_priority = kPriority;
+  static_cast<void>(sched_setscheduler(0, SCHED_FIFO, &priority));
 }
 
 class RunningPlant {
@@ -279,6 +288,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   try {
     parse(argc, argv, arguments);
+    stand_for_hardware();
     RunningPlant(arguments).run();
     return 0;
   } catch (const CLI::CallForHelp&) {

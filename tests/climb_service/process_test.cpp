@@ -62,6 +62,21 @@ class ClimbProcess : public ::testing::Test {
     return code;
   }
 
+  /// Tried again after what a starved machine does to any real-time program, and nothing else.
+  bool arm() {
+    for (int i = 0; i < 3; ++i) {
+      if (command({"arm"}) == 0) return true;
+      bool is_starved = false;
+      for (const char* sign : {"overrun", "IMU silent", "perception silent", "transmit stalled"}) {
+        is_starved = is_starved || said_.find(sign) != std::string::npos;
+      }
+      if (!is_starved) return false;
+      usleep(500'000);
+      command({"reset"});
+    }
+    return false;
+  }
+
   /// The next state that satisfies the condition, within 60 s.
   template <class Condition>
   bool wait_for(Condition condition) {
@@ -106,7 +121,7 @@ TEST_F(ClimbProcess, WholeRun) {
   ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
   EXPECT_EQ(command({"climb"}), 1);
   EXPECT_THAT(said_, HasSubstr("refused: not in DISARMED"));
-  ASSERT_EQ(command({"arm"}), 0) << said_ << climber->output();
+  ASSERT_TRUE(arm()) << said_ << climber->output();
   ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.state == m.STATE_HOLD; }));
   const std::vector<int> docked_rungs(std::begin(now_.rung_id), std::end(now_.rung_id));
   EXPECT_THAT(docked_rungs, testing::Each(testing::Ge(0)));
@@ -125,7 +140,7 @@ TEST_F(ClimbProcess, WholeRun) {
 TEST_F(ClimbProcess, EndsHolding) {
   const auto climber = controller(can());
   ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
-  ASSERT_EQ(command({"arm"}), 0) << said_ << climber->output();
+  ASSERT_TRUE(arm()) << said_ << climber->output();
   plant_->signal(SIGUSR1);
   ASSERT_EQ(command({"climb"}), 0) << said_;
   ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.limb_state[3] == m.LIMB_TRANSIT; }));
@@ -197,6 +212,25 @@ TEST_F(ClimbProcess, KilledControllerLeavesHoldingDrives) {
   ASSERT_TRUE(wait_for([old_session](const climb_state_t& m) {
     return m.session_id != old_session && m.state == m.STATE_DISARMED;
   })) << climber->output();
+}
+
+// Killed while it hangs on the ladder: the next one is armed there, claw by claw, and lets none go.
+TEST_F(ClimbProcess, IsArmedOnTheLadderAfterAKill) {
+  auto climber = controller(can());
+  ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
+  ASSERT_TRUE(arm()) << said_ << climber->output();
+  plant_->signal(SIGUSR1);
+  ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.state == m.STATE_HOLD; }));
+  const std::int64_t old_session = now_.session_id;
+  climber->signal(SIGKILL);
+  climber->wait(5s);
+  climber = controller(can());
+  ASSERT_TRUE(wait_for([old_session](const climb_state_t& m) {
+    return m.session_id != old_session && m.state == m.STATE_DISARMED;
+  })) << climber->output();
+  EXPECT_TRUE(arm()) << said_ << climber->output();
+  EXPECT_THAT(plant_->output(), Not(HasSubstr("FALLEN")));
+  EXPECT_THAT(plant_says(), Not(HasSubstr(" - ")));  // no claw without a rung
 }
 
 // Stopped in its tracks for half a second, as by a debugger: the drives have stopped by themselves;
