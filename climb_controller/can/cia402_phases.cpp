@@ -38,6 +38,7 @@ void Cia402Bus::begin_phase() {
       fault_log().clear();  // what the drives said while the bus only listened is about the past
       for (Cia402Axis& axis : axes_) {
         axis.forget(now_us());
+        axis.set_goal(Goal::kQuickStop);  // its target is forgotten: it holds by itself
         axis.set_fault_reset(true);
       }
       break;
