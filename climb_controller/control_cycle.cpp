@@ -126,6 +126,11 @@ climb::OperatorCommand ControlCycle::order_of(const CycleInbox& inbox) {
 }
 
 bool ControlCycle::may_reset_bus(const LineLevels& lines) const {
+  // Drives that follow targets would lose them: only what has stopped may be reset.
+  using S = climb::ControllerState;
+  const S at = controller_.state();
+  const bool stands = is_latched(at) || at == S::kBoot || at == S::kSelftest || at == S::kDisarmed;
+  if (!stands) return false;
   const bool needs_it = !bus_.faults().empty() || !walk_.is_configured();
   return needs_it && lines.estop_clear && !lines.lost;
 }
