@@ -272,6 +272,7 @@ void read(ConfigTable table, climb::ControllerParams& p) {
   table.read("put_down_after_s", p.put_down_after_s, {0.0, 10.0});
   table.read("torque_ramp_s", p.torque_ramp_s, {0.0, 10.0});
   table.read("max_sag_m", p.max_sag_m, {0.0, 0.1});
+  table.read("max_borne_part", p.max_borne_part, {0.0, 1.0});
   read(table.table("robot"), p.climb.robot);
   read(table.table("motion"), p.climb.motion);
   read(table.table("support"), p.climb.support);

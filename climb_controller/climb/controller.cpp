@@ -35,6 +35,9 @@ std::string check(const ControllerParams& p) {
     return "gate.period_s and watch.period_s must be motion.period_s";
   }
   if (!(p.max_sag_m > 0.0 && p.max_sag_m <= 1.0)) return "max_sag_m must be above 0, at most 1";
+  if (!(p.max_borne_part > 0.0 && p.max_borne_part < 1.0)) {
+    return "max_borne_part must be above 0, below 1";
+  }
   if (!(p.torque_ramp_s >= 0.01)) return "torque_ramp_s must be 0.01 or more";
   const double times_s[] = {p.selftest_s,       p.enable_timeout_s, p.dock_timeout_s,
                             p.put_down_after_s, p.torque_ramp_s,    p.reset_after_s};

@@ -30,6 +30,7 @@ struct ControllerParams {
   double put_down_after_s = 0.2;  ///< frozen so long, then the limb in the air is put down
   double torque_ramp_s = 0.5;     ///< of the feed-forward, when the dock lets go or takes over
   double max_sag_m = 0.004;       ///< of the body in the dock, without feed-forward
+  double max_borne_part = 0.5;    ///< of the weight on the claws: more, and no dock is there
   double reset_after_s = 0.3;     ///< no reset before everything stands
 };
 
@@ -83,6 +84,8 @@ class Controller {
   void work_put_down(const ControllerInput& input);
   void work_disarming(const ControllerInput& input);
   bool has_sagged() const;
+  /// The claws bear the body: upward forces by the legs' torques. True also when not finite.
+  bool are_claws_loaded(const ControllerInput& input) const;
 
   // controller_output.cpp: what it knows, and what it says
   LimbInput limb_input(const ControllerInput& input, Leg leg) const;

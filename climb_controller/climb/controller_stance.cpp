@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // When a claw loses its rung while another limb is in the air: everything freezes, and that limb
 // alone is put down. And the other way round: claws opened on purpose, in the dock.
+#include <Eigen/LU>
+
 #include "climb/controller.h"
+#include "climb/mass_model.h"
 
 namespace climb {
 
@@ -78,6 +81,11 @@ void Controller::work_disarming(const ControllerInput& input) {
       return;
     }
   }
+  // Position loops hold a body without sagging: only the torques tell that no dock is there.
+  if (are_claws_loaded(input)) {
+    take(E::kHold);
+    return;
+  }
   for (const Leg leg : kLegs) {
     LimbCycle& limb = limbs_[leg];
     if (!is_confirmed(limb.state())) continue;
@@ -93,6 +101,21 @@ bool Controller::has_sagged() const {
   const Eigen::Vector3d moved_m =
       odometry_.estimate().position_odom_m - T_odom_body_before_.translation();
   return !(moved_m.norm() <= params_.max_sag_m);
+}
+
+bool Controller::are_claws_loaded(const ControllerInput& input) const {
+  const Eigen::Vector3d up = input.imu.q_odom_body.conjugate() * Eigen::Vector3d::UnitZ();
+  double borne_N = 0.0;
+  for (const Leg leg : kLegs) {
+    if (!is_confirmed(limbs_[leg].state())) continue;
+    const LimbInput limb = limb_input(input, leg);
+    // tau = -J^T f of the rung on the foot.
+    const Eigen::Matrix3d J = kinematics_.jacobian(leg, limb.angles_rad);
+    borne_N -= up.dot(J.transpose().inverse() * limb.torques_Nm);
+  }
+  const double weight_N =
+      params_.climb.support.gravity_m_s2 * MassModel(params_.climb.robot).total_kg();
+  return !(borne_N <= params_.max_borne_part * weight_N);
 }
 
 }  // namespace climb

@@ -136,6 +136,26 @@ TEST(ControlCycle, ResetConfiguresARestartedDriveAgain) {
   EXPECT_TRUE(bench.report.bus_faults.size == 0) << bench.problems();
 }
 
+// Where the claws held in the dock, but no dock is there: position loops keep the body from sagging,
+// the torques tell, and the claws stay closed.
+TEST(ControlCycle, DisarmingWithoutADockHolds) {
+  CycleBench bench;
+  ASSERT_TRUE(bench.reach(ControllerState::kDisarmed));
+  ASSERT_EQ(bench.order(Order::kArm), CommandVerdict::kAccepted);
+  ASSERT_TRUE(bench.reach(ControllerState::kHold, 60.0)) << bench.problems();
+  bench.plant.set_docked(false);
+  bench.run_s(2.0);
+  EXPECT_EQ(bench.order(Order::kDisarm), CommandVerdict::kAccepted);
+  bench.run_s(10.0);
+  EXPECT_EQ(bench.state(), ControllerState::kHold) << bench.problems();
+  EXPECT_FALSE(bench.plant.truth().fallen);
+  for (int leg = 0; leg < simulator::kNumLegs; ++leg) EXPECT_TRUE(bench.plant.leg(leg).holds);
+  bench.plant.set_docked(true);
+  bench.run_s(1.0);
+  EXPECT_EQ(bench.order(Order::kDisarm), CommandVerdict::kAccepted);
+  EXPECT_TRUE(bench.reach(ControllerState::kDisarmed, 60.0)) << bench.problems();
+}
+
 // The same while disarmed: it cannot be armed, the reset heals it, nothing heals itself.
 TEST(ControlCycle, ResetWhileDisarmedBringsTheBusBack) {
   CycleBench bench;
