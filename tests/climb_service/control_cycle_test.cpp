@@ -136,8 +136,8 @@ TEST(ControlCycle, ResetConfiguresARestartedDriveAgain) {
   EXPECT_TRUE(bench.report.bus_faults.size == 0) << bench.problems();
 }
 
-// Where the claws held in the dock, but no dock is there: position loops keep the body from sagging,
-// the torques tell, and the claws stay closed.
+// Where the claws held in the dock, but no dock is there: position loops keep the body from
+// sagging, the torques tell, and the claws stay closed.
 TEST(ControlCycle, DisarmingWithoutADockHolds) {
   CycleBench bench;
   ASSERT_TRUE(bench.reach(ControllerState::kDisarmed));
