@@ -42,7 +42,6 @@ void FaultWatch::arm(const ControllerInput& input) {
   up_body_ = up_of(input.imu);
   for (int axis = 0; axis < kNumAxes; ++axis) last_rad_[axis] = input.axes[axis].position_rad;
   num_behind_.fill(0);
-  falling_s_ = 0.0;
 }
 
 FaultFlags FaultWatch::look(const ControllerInput& input, const PerAxis<AxisCommand>& sent) {
