@@ -89,7 +89,7 @@ int moving_joint(const CaseRun& run) {
   return simulator::axis_of(run.moving_leg(), joint == 3 ? 1 : joint);
 }
 bool where_limbs_move(const Situation& at) {
-  return at.leg >= 0 && (is_powered(at.state) || at.state == S::kArming);
+  return at.leg >= 0 && at.follows && (is_powered(at.state) || at.state == S::kArming);
 }
 void get_stuck(CaseRun& run) {
   run.box().plant().drive(moving_joint(run)).motor().stuck = true;

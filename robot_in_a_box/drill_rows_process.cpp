@@ -254,7 +254,7 @@ const char* harm_by_speaking(const CaseRun& run) {
 // --- row 27: IMU ---------------------------------------------------------------------------------
 
 bool is_armed(const Situation& at) {
-  return is_powered(at.state) || (at.state == S::kArming && at.leg >= 0);
+  return is_powered(at.state) || (at.state == S::kArming && at.follows);
 }
 void tilt(CaseRun& run) {
   run.box().imu_turn = Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY());

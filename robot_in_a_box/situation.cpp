@@ -16,6 +16,7 @@ Situation situation_of(const ClimbBox& box) {
   situation.state = box.state();
   situation.shifts = box.report().output.body_shift;
   situation.docked = box.plant().is_docked();
+  situation.follows = box.report().output.send;
   for (const climb::Leg leg : climb::kLegs) {
     if (situation.leg >= 0 || !is_under_way(box, leg)) continue;
     situation.leg = leg;
@@ -32,6 +33,7 @@ std::string describe(const Situation& situation) {
   }
   if (situation.shifts) text += " body shift";
   if (situation.docked) text += " docked";
+  if (situation.state == climb::ControllerState::kArming && !situation.follows) text += " enabling";
   return text;
 }
 

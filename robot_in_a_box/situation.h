@@ -16,8 +16,9 @@ struct Situation {
   climb::LimbState limb = climb::LimbState::kLoaded;  ///< of that leg
   bool shifts = false;                                ///< the body is being moved
   bool docked = true;
+  bool follows = false;  ///< drives are given targets
 
-  auto key() const { return std::tuple(state, leg, limb, shifts, docked); }
+  auto key() const { return std::tuple(state, leg, limb, shifts, docked, follows); }
   friend bool operator<(const Situation& a, const Situation& b) { return a.key() < b.key(); }
 };
 
