@@ -49,7 +49,7 @@ void BusWalk::obey(DriveRequest request, bool has_targets) {
   const BusPhase phase = bus_.phase();
   switch (request) {
     case DriveRequest::kNone:
-      if (phase == BusPhase::kEnabled && !has_targets) bus_.stop(can::StopKind::kHold);
+      if (phase == BusPhase::kEnabled && !has_targets) bus_.stop(can::StopKind::kQuickStop);
       return;
     case DriveRequest::kEnable:
       bus_.enable();  // no effect while it is enabling
