@@ -41,9 +41,9 @@ volatile std::sig_atomic_t stop_requested = 0;
 void request_stop(int) {
   stop_requested = 1;
 }
-volatile std::sig_atomic_t undock_requested = 0;
-void request_undock(int) {
-  undock_requested = 1;
+volatile std::sig_atomic_t dock_signal = 0;
+void toggle_dock(int) {
+  dock_signal = 1 - dock_signal;
 }
 volatile std::sig_atomic_t estop_pressed = 0;
 void toggle_estop(int) {
@@ -68,7 +68,8 @@ struct Arguments {
 void parse(int argc, char** argv, Arguments& arguments) {
   CLI::App app(
       "The robot on its ladder: sixteen drives, claws, rungs, lines. "
-      "SIGUSR1 releases the dock, SIGUSR2 presses and releases the E-stop.",
+      "SIGUSR1 releases the dock and holds the body again where it is, "
+      "SIGUSR2 presses and releases the E-stop.",
       "ladder_plant");
   bool gripping = false;
   app.add_option("--can", arguments.can, "unix:PATH (served here) or a CAN interface");
@@ -205,7 +206,8 @@ class RunningPlant {
 
   /// What a tester does by signals; a script may do the same at its times.
   void obey_hand() {
-    if (undock_requested != 0) plant_.set_docked(false);
+    if (dock_signal != hand_dock_signal_) plant_.set_docked(!plant_.is_docked());
+    hand_dock_signal_ = dock_signal;
     if (estop_pressed == hand_pressed_) return;
     hand_pressed_ = estop_pressed;
     plant_.press_estop(hand_pressed_ != 0);
@@ -267,6 +269,7 @@ class RunningPlant {
   std::optional<runtime::Bus> rungs_bus_;
   std::vector<pollfd> descriptors_;
   std::int64_t last_us_ = 0;
+  int hand_dock_signal_ = 0;
   int hand_pressed_ = 0;
   std::int64_t print_due_us_ = 0;
   std::int64_t truth_due_us_ = 0;
@@ -283,7 +286,7 @@ class RunningPlant {
 int main(int argc, char** argv) {
   std::signal(SIGTERM, request_stop);
   std::signal(SIGINT, request_stop);
-  std::signal(SIGUSR1, request_undock);
+  std::signal(SIGUSR1, toggle_dock);
   std::signal(SIGUSR2, toggle_estop);
   Arguments arguments;
   try {
