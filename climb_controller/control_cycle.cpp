@@ -60,19 +60,26 @@ void ControlCycle::step(std::int64_t now_us, const CycleInbox& inbox,
                         CycleReport& report) noexcept {
   now_us_ = now_us;
   bus_.begin_cycle(now_us, feedback_);
-  walk_.step(now_us, controller_.state() == climb::ControllerState::kBoot);
-  read(inbox);
-  input_.command = order_of(inbox);
-  controller_.step(input_, output_);
-  if (input_.command.order != Order::kNone) answer(input_.command, output_.command);
-  walk_.obey(output_.drives, output_.send);
+  // Drives that leave their state because they were told to are no fault.
+  if (!has_handed_over_) control(inbox);
   send();
   report.lines = inbox.lines;
   fill(report);
 }
 
+void ControlCycle::control(const CycleInbox& inbox) {
+  walk_.step(now_us_, controller_.state() == climb::ControllerState::kBoot);
+  read(inbox);
+  input_.command = order_of(inbox);
+  controller_.step(input_, output_);
+  if (input_.command.order != Order::kNone) answer(input_.command, output_.command);
+  walk_.obey(output_.drives, output_.send);
+}
+
 void ControlCycle::hand_over() noexcept {
   bus_.stop(can::StopKind::kQuickStop);
+  has_handed_over_ = true;
+  output_.send = false;
 }
 
 void ControlCycle::read(const CycleInbox& inbox) {

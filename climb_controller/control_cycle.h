@@ -107,13 +107,15 @@ class ControlCycle {
   /// Once per period.
   void step(std::int64_t now_us, const CycleInbox& inbox, CycleReport& report) noexcept;
 
-  /// At the very end: drives that follow targets stop and hold by themselves.
+  /// At the very end: drives that follow targets stop and hold by themselves. Nothing is decided
+  /// afterwards; step() only keeps the bus going until the process ends.
   void hand_over() noexcept;
 
   const climb::Controller& controller() const { return controller_; }
   std::uint64_t session_id() const { return params_.controller.session_id; }
 
  private:
+  void control(const CycleInbox& inbox);
   void read(const CycleInbox& inbox);
   climb::OperatorCommand order_of(const CycleInbox& inbox);
   climb::CommandVerdict judge(const climb::OperatorCommand& command);
@@ -134,6 +136,7 @@ class ControlCycle {
   climb::PerAxis<can::AxisTarget> targets_{};
   climb::PerAxis<int> silent_cycles_{};
   std::int64_t now_us_ = 0;
+  bool has_handed_over_ = false;
 
   std::int64_t last_seq_ = -1;
   climb::OperatorCommand waiting_;   ///< a reset that waits for the bus; kNone: none

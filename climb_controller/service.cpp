@@ -220,7 +220,9 @@ std::optional<int> ClimbService::end_now(bool asked) noexcept {
   }
   control_.hand_over();
   if (!control_.has_handed_over()) return std::nullopt;
-  context_.journal.info("handed over: the drives hold by themselves");
+  const bool hold = !params_.cycle.allow_no_hold_on_loss;
+  context_.journal.info(hold ? "handed over: the drives hold by themselves"
+                             : "handed over: what the drives do now is theirs (ground test)");
   return runtime::kExitAsked;
 }
 

@@ -97,6 +97,14 @@ class ClimbProcess : public ::testing::Test {
     message.order = order;
     bus_->publish(channels::kCommand, message);
   }
+  /// Within 5 s.
+  bool plant_shows(const std::string& words, bool wanted) const {
+    for (int i = 0; i < 100; ++i) {
+      if ((plant_says().find(words) != std::string::npos) == wanted) return true;
+      usleep(50'000);
+    }
+    return false;
+  }
   /// The newest line that the plant printed.
   std::string plant_says() const {
     const std::string text = plant_->output();
@@ -134,6 +142,35 @@ TEST_F(ClimbProcess, WholeRun) {
   EXPECT_NE(poses_->take(0), nullptr);
   ASSERT_EQ(command({"disarm"}), 0) << said_;
   EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+}
+
+// The dock is taken away and brought back: disarmed there, the claws open and the dock carries.
+TEST_F(ClimbProcess, DisarmsInTheDock) {
+  const auto climber = controller(can());
+  ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
+  ASSERT_TRUE(arm()) << said_ << climber->output();
+  plant_->signal(SIGUSR1);
+  ASSERT_TRUE(plant_shows("docked", false)) << plant_says();
+  plant_->signal(SIGUSR1);
+  ASSERT_TRUE(plant_shows("docked", true)) << plant_says();
+  ASSERT_EQ(command({"disarm", "--wait", "DISARMED"}), 0) << said_ << climber->output();
+  EXPECT_TRUE(plant_shows("enabled  0  claws - - - -", true)) << plant_says();
+  EXPECT_THAT(plant_->output(), Not(HasSubstr("FALLEN")));
+}
+
+// Asked to end while it stands and holds: the hand-over is not told as a fault, no flight is kept.
+TEST_F(ClimbProcess, EndInHoldIsNoFault) {
+  const auto climber = controller(can());
+  ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
+  ASSERT_TRUE(arm()) << said_ << climber->output();
+  const std::size_t before = climber->output().size();
+  climber->signal(SIGTERM);
+  EXPECT_EQ(climber->wait(10s), 0);
+  const std::string told = climber->output().substr(before);
+  EXPECT_THAT(told, HasSubstr("handed over"));
+  EXPECT_THAT(told, Not(HasSubstr("FAULT_HOLD")));
+  EXPECT_THAT(told, Not(HasSubstr("candump")));
+  EXPECT_TRUE(plant_shows("enabled  0", true)) << plant_says();
 }
 
 // Asked to end while climbing: the step in the air is finished, then the drives hold by themselves.
@@ -304,6 +341,7 @@ TEST_F(ClimbProcess, WrongConfiguration) {
       {"climb.no_such_key=1", "climb.no_such_key"},
       {"climb.power_off_hold=rope", "power_off_hold"},
       {"climb.can.accepted_objects=605E", "accepted_objects"},
+      {"climb.can.protocol=canopen", "protocol"},
       {"climb.period_s=0.5", "period_s"},
       {"climb.drives.node_id=[1,1,3,4,5,6,7,8,9,10,11,12,13,14,15,16]", "node_id"},
       {"climb.robot.knee_bend.max_rad=0.1", "knee_bend"},
