@@ -5,6 +5,9 @@
 #include <charconv>
 #include <sstream>
 
+#include "can/cia402_bus.h"
+#include "can/odrive_bus.h"
+
 namespace climb_controller {
 namespace {
 
@@ -176,6 +179,7 @@ void read(ConfigTable table, DriveKind& p) {
   table.read("following_error_rad", p.following_error_rad);
   table.read("following_error_ms", p.following_error_ms);
   table.read("has_torque", p.has_torque);
+  table.read("max_current_A", p.max_current_A);
 }
 
 /// Whole numbers written as TOML numbers.
@@ -261,6 +265,37 @@ void read(ConfigTable table, gpio::LinesParams& p) {
   table.require(check(p));
 }
 
+void read_bus(ConfigTable table, ServiceParams& p) {
+  table.read("interface", p.can_interface);
+  table.read("protocol", p.protocol,
+             {{"cia402", Protocol::kCia402}, {"odrive", Protocol::kOdrive}});
+  table.read("feed_forward", p.feed_forward);
+  table.read("torque_constant_Nm_A", p.torque_constant_Nm_A);
+  p.accepted_objects = read_objects(table, "accepted_objects");
+  if (p.protocol == Protocol::kOdrive && !p.accepted_objects.empty()) {
+    table.fail("accepted_objects", "is about CiA 402: an ODrive has no objects");
+  }
+}
+
+can::Cia402Params cia402_params(const ServiceParams& params) {
+  can::Cia402Params bus = servo_bus_params(params.drives, params.cycle.controller.climb);
+  bus.feed_forward = params.feed_forward;
+  bus.optional_objects = params.accepted_objects;
+  return bus;
+}
+
+can::OdriveParams odrive_params(const ServiceParams& params) {
+  can::OdriveParams bus = odrive_bus_params(params.drives, params.cycle.controller.climb);
+  bus.torque_constant_Nm_A = params.torque_constant_Nm_A;
+  return bus;
+}
+
+/// "" or the violated relation; of drives that are not chosen nothing is asked.
+std::string check_bus(const ServiceParams& params) {
+  return params.protocol == Protocol::kOdrive ? check(odrive_params(params))
+                                              : check(cia402_params(params));
+}
+
 void read(ConfigTable table, climb::ControllerParams& p) {
   table.read("period_s", p.climb.motion.period_s, {0.001, 0.1});
   p.gate.period_s = p.watch.period_s = p.climb.motion.period_s;
@@ -296,10 +331,7 @@ ServiceParams read_params(ConfigTable table) {
   table.read("flight_folder", params.flight_folder);
   read(table, params.cycle.controller);
   read(table.table("drives"), params.drives);
-  ConfigTable can = table.table("can");
-  can.read("interface", params.can_interface);
-  can.read("feed_forward", params.feed_forward);
-  params.accepted_objects = read_objects(can, "accepted_objects");
+  read_bus(table.table("can"), params);
   params.cycle.controller.feed_forward = params.feed_forward;
   read(table.table("lines"), params.lines);
   read(table.table("attitude"), params.attitude);
@@ -309,15 +341,17 @@ ServiceParams read_params(ConfigTable table) {
   CycleParams cycle = params.cycle;
   cycle.controller.session_id = 1;  // any: it is drawn at the start
   table.require(check(cycle));
-  table.table("drives").require(check(bus_params(params)));
+  table.table("drives").require(check_bus(params));
   return params;
 }
 
-can::Cia402Params bus_params(const ServiceParams& params) {
-  can::Cia402Params bus = servo_bus_params(params.drives, params.cycle.controller.climb);
-  bus.feed_forward = params.feed_forward;
-  bus.optional_objects = params.accepted_objects;
-  return bus;
+std::unique_ptr<can::ServoBus> make_servo_bus(const ServiceParams& params,
+                                              can::Transport& transport,
+                                              can::FlightRecorder* recorder) {
+  if (params.protocol == Protocol::kOdrive) {
+    return std::make_unique<can::OdriveBus>(odrive_params(params), transport, recorder);
+  }
+  return std::make_unique<can::Cia402Bus>(cia402_params(params), transport, recorder);
 }
 
 }  // namespace climb_controller

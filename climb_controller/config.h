@@ -2,6 +2,8 @@
 // [climb] of the configuration as parameters of cycle, drives, lines and perception.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,11 +15,16 @@
 
 namespace climb_controller {
 
+/// What the drives speak.
+enum class Protocol : std::uint8_t { kCia402, kOdrive };
+
 struct ServiceParams {
   CycleParams cycle;  ///< session_id is not configuration
   DriveLayout drives;
   std::string can_interface = "can0";
+  Protocol protocol = Protocol::kCia402;
   bool feed_forward = false;
+  double torque_constant_Nm_A = 0.05;                 ///< ODrive only
   std::vector<can::cia402::Object> accepted_objects;  ///< of odd drives: as they are, or absent
   gpio::LinesParams lines;
   climb::AttitudeParams attitude;
@@ -28,7 +35,9 @@ struct ServiceParams {
 /// Throws runtime::ConfigError.
 ServiceParams read_params(runtime::ConfigTable table);
 
-/// The bus with these drives.
-can::Cia402Params bus_params(const ServiceParams& params);
+/// The bus with these drives, in their protocol. Transport and recorder (may be null) outlive it.
+std::unique_ptr<can::ServoBus> make_servo_bus(const ServiceParams& params,
+                                              can::Transport& transport,
+                                              can::FlightRecorder* recorder);
 
 }  // namespace climb_controller

@@ -73,10 +73,10 @@ ControlThread::ControlThread(const ServiceParams& params)
       period_us_(
           static_cast<std::int64_t>(params.cycle.controller.climb.motion.period_s * 1e6 + 0.5)),
       socket_(can::CanSocketParams{.interface = params.can_interface}),
-      bus_(bus_params(params), socket_, &recorder_),
+      bus_(make_servo_bus(params, socket_, &recorder_)),
       chip_(gpio::make_line_chip(params.lines)),
       lines_(params.lines, *chip_),
-      cycle_(params.cycle, bus_),
+      cycle_(params.cycle, *bus_),
       clock_({.period_us = period_us_}) {
   news_fd_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   rungs_.prepare([](RungsSnapshot& snapshot) { snapshot.reserve(); });

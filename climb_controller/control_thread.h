@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "can/can_socket.h"
-#include "can/cia402_bus.h"
 #include "can/flight_recorder.h"
+#include "can/servo_bus.h"
 #include "climb_controller/config.h"
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/cycle_clock.h"
@@ -87,7 +87,7 @@ class ControlThread {
   can::CanSocket socket_;
   can::FlightRecorder recorder_;
   can::FlightRecorder flight_;  ///< a copy for the other thread
-  can::Cia402Bus bus_;
+  std::unique_ptr<can::ServoBus> bus_;
   std::unique_ptr<gpio::LineChip> chip_;
   gpio::Lines lines_;
   ControlCycle cycle_;

@@ -6,10 +6,9 @@
 namespace climb_controller {
 namespace {
 constexpr double kJawAcceleration_rad_s2 = 300.0;  // full speed within two cycles
-}
 
-can::Cia402Params servo_bus_params(const DriveLayout& layout, const climb::ClimbParams& climb) {
-  can::Cia402Params bus;
+/// What does not depend on the protocol.
+void lay_out(const DriveLayout& layout, const climb::ClimbParams& climb, can::BusParams& bus) {
   bus.cycle_us = static_cast<std::int64_t>(climb.motion.period_s * 1e6 + 0.5);
   const climb::PerAxis<climb::AxisLimits> limits = climb::axis_limits(climb.robot);
   const climb::RobotParams& robot = climb.robot;
@@ -34,8 +33,22 @@ can::Cia402Params servo_bus_params(const DriveLayout& layout, const climb::Climb
     config.following_error_rad = kind.following_error_rad;
     config.following_error_ms = kind.following_error_ms;
     config.has_torque = kind.has_torque;
+    config.max_current_A = kind.max_current_A;
     bus.axes.push_back(config);
   }
+}
+
+}  // namespace
+
+can::Cia402Params servo_bus_params(const DriveLayout& layout, const climb::ClimbParams& climb) {
+  can::Cia402Params bus;
+  lay_out(layout, climb, bus);
+  return bus;
+}
+
+can::OdriveParams odrive_bus_params(const DriveLayout& layout, const climb::ClimbParams& climb) {
+  can::OdriveParams bus;
+  lay_out(layout, climb, bus);
   return bus;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "can/cia402_objects.h"
+#include "can/odrive_bus.h"
 #include "climb/axis.h"
 #include "climb/params.h"
 
@@ -17,7 +18,8 @@ struct DriveKind {
   double quick_stop_rad_s2 = 20.0;   ///< stands within 125 ms from 2.5 rad/s
   double following_error_rad = 0.3;  ///< 60 ms of lag at 2.5 rad/s, twice
   int following_error_ms = 50;
-  bool has_torque = true;  ///< 6072h and 6077h exist
+  bool has_torque = true;       ///< 6072h and 6077h exist
+  double max_current_A = 20.0;  ///< ODrive only
 };
 
 template <class T>
@@ -44,5 +46,6 @@ struct DriveLayout {
 
 /// The bus with these drives and the robot's limits; check() of the result is the caller's.
 can::Cia402Params servo_bus_params(const DriveLayout& layout, const climb::ClimbParams& climb);
+can::OdriveParams odrive_bus_params(const DriveLayout& layout, const climb::ClimbParams& climb);
 
 }  // namespace climb_controller

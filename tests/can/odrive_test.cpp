@@ -12,6 +12,7 @@
 
 #include "can/odrive_bus.h"
 #include "fake_line.h"
+#include "odrive_motor.h"
 #include "random_messages.h"
 
 namespace can {
@@ -73,29 +74,6 @@ TEST(OdriveCodec, OddInputs) {
   EXPECT_FALSE(odrive::decode_heartbeat(remote));
 }
 
-/// One ODrive: heartbeat every 100 ms, estimates every 10 ms, armed by Set_Axis_State.
-class Motor {
- public:
-  void hear(const CanFrame& frame) {
-    if (frame.id == 0x027) state = frame.data[0];
-    if (frame.id == 0x02C && state == 8) estimates = hex(frame).substr(4, 8);
-    if (frame.id == 0x02C && first_target.empty()) first_target = hex(frame).substr(4, 8);
-    if (frame.id == 0x038) error = 0;
-  }
-  void speak(FakeLine& line, int time_ms) const {
-    if (is_silent) return;
-    char text[40];
-    std::snprintf(text, sizeof text, "021#%02X000000%02X000000", error, state);
-    if (time_ms % 100 == 0) line.put(from_hex(text));
-    if (time_ms % 10 == 5) line.put(from_hex("029#" + estimates + "00000000"));
-  }
-  int state = 1;
-  int error = 0;
-  bool is_silent = false;
-  std::string estimates = "0000803F";  // 1.0 revolution
-  std::string first_target;
-};
-
 class OdriveRig {
  public:
   OdriveRig() {
@@ -113,7 +91,7 @@ class OdriveRig {
         for (; num_delivered < line.sent.size(); ++num_delivered) {
           motor.hear(line.sent[num_delivered]);
         }
-        motor.speak(line, static_cast<int>(++time_ms));
+        motor.speak(line, ++time_ms);
       }
     }
   }
@@ -127,7 +105,7 @@ class OdriveRig {
     return bus->phase() == BusPhase::kEnabled;
   }
   FakeLine line;
-  Motor motor;
+  OdriveMotor motor;
   std::unique_ptr<OdriveBus> bus;
   AxisTarget target;
   AxisFeedback feedback;
