@@ -302,7 +302,10 @@ void LimbCycle::finish_pull(const LimbInput& input) {
   const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
   const Eigen::Vector3d moved_m = kinematics_.foot_m(leg_, input.angles_rad) - from_m;
   last_witness_ = confirmation_.conclude({moved_m.z(), pull_N(input)});
-  take(last_witness_.all() ? LimbEvent::kDone : LimbEvent::kMissed);
+  // On fewer than three others the body gives way too much to be pulled at, and what has closed on
+  // a rung is not opened again (invariant 3).
+  const bool is_needed = !input.others_hold && last_witness_.closed();
+  take(last_witness_.all() || is_needed ? LimbEvent::kDone : LimbEvent::kMissed);
 }
 
 void LimbCycle::keep_budget() {
