@@ -53,6 +53,7 @@ bool publish_small(lcm::LCM& bus, int round) {
          publish(bus, channels::kCloud, round) && publish(bus, channels::kTopology, round) &&
          publish(bus, channels::kRungs, round) && publish(bus, channels::kHealth, round) &&
          publish(bus, channels::kEvent, round) && publish(bus, channels::kConfig, round) &&
+         publish(bus, channels::kCommand, round) && publish(bus, channels::kClimb, round) &&
          publish(bus, channels::kTruth, round);
 }
 
