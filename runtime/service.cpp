@@ -80,6 +80,22 @@ class Reporter {
   std::int64_t next_config_us_ = 0;
 };
 
+/// Events go out on the bus as long as this lives: an error that ends the start is told when the
+/// bus is gone already.
+class PublishedJournal {
+ public:
+  PublishedJournal(Journal& journal, Bus& bus) : journal_(journal) {
+    journal.publish_to(
+        [&bus](const ladder_msgs::event_t& event) { bus.publish(channels::kEvent, event); });
+  }
+  ~PublishedJournal() { journal_.publish_to(nullptr); }
+  PublishedJournal(const PublishedJournal&) = delete;
+  PublishedJournal& operator=(const PublishedJournal&) = delete;
+
+ private:
+  Journal& journal_;
+};
+
 /// The service's exit code.
 int work_until_stopped(Service& service, Bus& bus, Health& health, Reporter& reporter,
                        int stop_signals) {
@@ -118,8 +134,7 @@ int run(const ServiceDescription& description, const Arguments& arguments, Journ
     std::printf("%s", config.resolved().c_str());
     return kExitAsked;
   }
-  journal.publish_to(
-      [&bus](const ladder_msgs::event_t& event) { bus.publish(channels::kEvent, event); });
+  const PublishedJournal published(journal, bus);
   if (const std::string problem = socket_buffer_problem(url); !problem.empty()) {
     journal.warning(problem);
     health.set_flag(ladder_msgs::health_t::FLAG_SMALL_SOCKET_BUFFER, true);
