@@ -120,6 +120,7 @@ void Cia402Axis::take_status(const cia402::Tpdo1& pdo) {
   // Until it follows targets, the target is where it stands.
   if (!has_status_ || state_ != DriveState::kOperationEnabled) command_.counts = position_counts_;
   has_status_ = true;
+  is_doubted_ = false;
   is_fresh_ = true;
 }
 

@@ -49,8 +49,10 @@ class Cia402Axis {
   bool offer_target(const AxisTarget& target);
   void accept_target();
 
+  /// After a pause of ours: it may have stopped by itself, and is told nothing before it speaks.
+  void doubt() { is_doubted_ = true; }
   /// Nothing is told to a drive that has not said its state.
-  bool may_send() const { return is_configured_ && has_status_; }
+  bool may_send() const { return is_configured_ && has_status_ && !is_doubted_; }
   cia402::Rpdo1 next_rpdo1();
   cia402::Rpdo2 next_rpdo2() const;
 
@@ -82,6 +84,7 @@ class Cia402Axis {
   std::int64_t heartbeat_us_ = 0;
   cia402::NmtState network_state_ = cia402::NmtState::kBootUp;
   bool has_status_ = false;  ///< statusword heard since forget()
+  bool is_doubted_ = false;  ///< statusword older than our pause
   bool is_fresh_ = false;    ///< statusword heard since the last cycle
   bool was_fresh_ = false;   ///< the same for the feedback of this cycle
   int num_missed_ = 0;

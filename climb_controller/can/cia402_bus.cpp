@@ -83,12 +83,11 @@ void Cia402Bus::send_cycle(const Targets& targets) {
   const bool was_away = now_us() - cycle_us_ > params_.max_missed_cycles * params_.cycle_us;
   cycle_us_ = now_us();
   // After a pause the drives may have stopped by themselves; an enabling word from before would
-  // silently undo that. So first only SYNC: what they say now decides.
+  // silently undo that. So first only SYNC, until each has said its state anew.
   if (was_away) {
-    was_sync_sent_ = line().send(cia402::encode_sync());
-  } else {
-    send_commands(targets);
+    for (Cia402Axis& axis : axes_) axis.doubt();
   }
+  send_commands(targets);
 }
 
 void Cia402Bus::send_commands(const Targets& targets) {

@@ -180,6 +180,26 @@ TEST(Cia402Faults, PauseOfTheControllerIsNotUndone) {
   }
 }
 
+// The same when the drives answer later than a cycle: until each has said its state anew it is told
+// nothing, since its last word before the pause would undo the stop.
+TEST(Cia402Faults, LateAnswersAfterAPauseAreAwaited) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.run_ms(50);
+  rig.time_us += 200'000;
+  for (ScriptedDrive& drive : rig.drives) {
+    drive.set_status_word(0x0207);
+    drive.is_mute_on_sync = true;
+  }
+  rig.run_ms(20);
+  for (ScriptedDrive& drive : rig.drives) drive.is_mute_on_sync = false;
+  rig.run_ms(50);
+  for (const ScriptedDrive& drive : rig.drives) {
+    EXPECT_EQ(drive.status_word(), 0x0207);
+    EXPECT_EQ(drive.control_word(), 0x0B);
+  }
+}
+
 // Targets that are no numbers, do not fit or are old are refused whole: all axes keep the last.
 TEST(Cia402Faults, RefusedTargets) {
   struct Row {
