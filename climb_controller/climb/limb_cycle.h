@@ -167,7 +167,7 @@ class LimbCycle {
   bool failed_ = false;
   bool is_jaw_forced_ = false;
   GraspWitness last_witness_;
-  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();  ///< odom  ///< odom
+  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();  ///< odom
   LegAngles torques_before_Nm_ = LegAngles::Zero();
 };
 
