@@ -48,7 +48,7 @@ class Help(unittest.TestCase):
             with self.subTest(path.name):
                 self.assertNotEqual(result.returncode, 0)
                 self.assertIn("usage:", result.stderr)
-                if path.suffix != ".py":  # argparse complains about missing arguments first
+                if "import argparse" not in path.read_text():  # it complains about missing arguments first
                     self.assertIn("--no-such-option", result.stderr)
 
     def test_readme_lists_every_script(self):
