@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_in_a_box/perceived_ladder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +21,7 @@ Eigen::Vector3d within(double limit_m, base::Rng& rng) {
 }  // namespace
 
 PerceivedLadder::PerceivedLadder(const PerceptionParams& params, std::uint64_t seed)
-    : params_(params), rng_(seed) {
+    : params_(params), rng_(seed), tilt_rng_(seed, 1) {
   newest_.reserve();
 }
 
@@ -28,6 +29,7 @@ void PerceivedLadder::update(std::int64_t now_us, const simulator::RobotPlant& p
                              const Eigen::Isometry3d& T_odom_body) {
   const auto rungs = plant.world().rungs();
   while (bias_m_.size() < rungs.size()) bias_m_.push_back(within(params_.bias_m, rng_));
+  while (tilt_rad_.size() < rungs.size()) tilt_rad_.push_back(within(params_.tilt_rad, tilt_rng_));
   if (now_us < next_us_) return;
   next_us_ += params_.period_us;
   if (silent) return;
@@ -58,9 +60,14 @@ void PerceivedLadder::add_rung(int index, const simulator::LadderRung& rung,
                                const Eigen::Isometry3d& T_odom_world) {
   const Eigen::Vector3d error_m =
       bias_m_[static_cast<std::size_t>(index)] + within(params_.jitter_m, rng_);
-  const Eigen::Vector3f left_m = (T_odom_world * rung.end1_m + error_m).cast<float>();
-  const Eigen::Vector3f right_m = (T_odom_world * rung.end0_m + error_m).cast<float>();
+  const Eigen::Vector3d half_m = 0.5 * (rung.end1_m - rung.end0_m);
+  const Eigen::Vector3d turned_m = tilt_rad_[static_cast<std::size_t>(index)].cross(half_m);
+  const Eigen::Vector3f left_m = (T_odom_world * (rung.end1_m + turned_m) + error_m).cast<float>();
+  const Eigen::Vector3f right_m = (T_odom_world * (rung.end0_m - turned_m) + error_m).cast<float>();
   const double length_m = (rung.end1_m - rung.end0_m).norm();
+  const bool is_damaged =
+      index == withdrawn_rung ||
+      std::find(damaged_rungs.begin(), damaged_rungs.end(), index) != damaged_rungs.end();
   ladder_msgs::ladder_t& m = message_;
   m.interval_rung.push_back(m.num_rungs);
   m.interval_from_m.push_back(static_cast<float>(params_.stretch_end_m));
@@ -82,7 +89,7 @@ void PerceivedLadder::add_rung(int index, const simulator::LadderRung& rung,
   m.rung_z1_m.push_back(right_m.z());
   m.rung_radius_m.push_back(static_cast<float>(rung.radius_m));
   m.rung_sag_m.push_back(0.0F);
-  m.rung_flags.push_back(index == withdrawn_rung ? m.FLAG_BENT : std::int16_t{0});
+  m.rung_flags.push_back(is_damaged ? m.FLAG_BENT : std::int16_t{0});
   m.rung_cov_xx_m2.push_back(kVariance_m2);
   m.rung_cov_xy_m2.push_back(0.0F);
   m.rung_cov_xz_m2.push_back(0.0F);

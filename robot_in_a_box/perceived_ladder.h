@@ -18,6 +18,7 @@ struct PerceptionParams {
   std::int64_t period_us = 66'667;
   double bias_m = 0.003;        ///< of a rung, uniform +- per axis, for its life
   double jitter_m = 0.001;      ///< of a rung in one message, uniform +- per axis
+  double tilt_rad = 0.0;        ///< of a rung about its middle, uniform +- per axis, for its life
   double range_m = 1.0;         ///< rungs so far above and below the body are seen
   double stretch_end_m = 0.02;  ///< so far from either end a claw is kept
 };
@@ -46,9 +47,10 @@ class PerceivedLadder {
   std::int64_t received_us() const { return newest_.received_us; }
   std::int64_t num_refused() const { return inbox_.num_refused(); }
 
-  bool silent = false;        ///< perception has stopped
-  int withdrawn_rung = -1;    ///< flagged as damaged from now on
-  double seen_from_m = -1e9;  ///< rungs nearer than this above the body are not seen
+  bool silent = false;             ///< perception has stopped
+  int withdrawn_rung = -1;         ///< flagged as damaged from now on
+  std::vector<int> damaged_rungs;  ///< seen to be bent or broken off from the first
+  double seen_from_m = -1e9;       ///< rungs nearer than this above the body are not seen
   Nonsense nonsense = Nonsense::kNone;
 
  private:
@@ -60,7 +62,9 @@ class PerceivedLadder {
 
   PerceptionParams params_;
   base::Rng rng_;
+  base::Rng tilt_rng_;
   std::vector<Eigen::Vector3d> bias_m_;
+  std::vector<Eigen::Vector3d> tilt_rad_;
   climb_controller::RungsInbox inbox_{climb_controller::PerceptionParams{}};
   climb_controller::RungsSnapshot newest_;
   ladder_msgs::ladder_t message_;

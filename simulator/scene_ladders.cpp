@@ -61,7 +61,7 @@ LadderShape draw_shape(SceneBuilder& builder) {
       builder.draw_index(std::min(1, params.num_rungs - 1), std::min(3, params.num_rungs - 1));
   const bool has_damage = params.kind == SceneKind::kMissing || params.kind == SceneKind::kBent ||
                           params.kind == SceneKind::kBroken;
-  if (has_damage) shape.damaged = damaged;
+  if (has_damage) shape.damaged = params.damaged_rung.value_or(damaged);
   if (params.kind == SceneKind::kDark) shape.reflectance *= kDarkFactor;
   return shape;
 }

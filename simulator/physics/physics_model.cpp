@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "simulator/physics/physics_model.h"
 
+#include <algorithm>
 #include <string>
 
 #include "base/check.h"
@@ -17,9 +18,20 @@ std::string joint_name(int axis) {
          kLegNames[static_cast<std::size_t>(leg_of(axis))];
 }
 
+/// Rungs with round ends: MuJoCo knows two capsules' contact in closed form, a cylinder's only by
+/// search, and their ends are in the rails anyway. A broken end keeps its place.
+Scene with_round_ends(Scene scene) {
+  for (Solid& solid : scene.solids) {
+    if (solid.part != Part::kRung || solid.shape != Shape::kCylinder) continue;
+    solid.shape = Shape::kCapsule;
+    solid.half_size_m.y() = std::max(0.0, solid.half_size_m.y() - solid.half_size_m.x());
+  }
+  return scene;
+}
+
 mjModel* compile(const Scene& scene) {
-  const std::array<MjcfFile, 2> files = {
-      {{"scene.xml", to_mjcf(scene, "robot.xml")}, {"robot.xml", kRobotXml}}};
+  const std::string scene_xml = to_mjcf(with_round_ends(scene), "robot.xml");
+  const std::array<MjcfFile, 2> files = {{{"scene.xml", scene_xml}, {"robot.xml", kRobotXml}}};
   return compile_mjcf(files);
 }
 

@@ -39,6 +39,7 @@ struct PlantTruth {
   std::array<LegTruth, kNumLegs> legs;
   std::array<double, kNumAxes> joint_rad{};
   std::array<double, kNumAxes> joint_rad_s{};
+  std::array<double, kNumAxes> joint_Nm{};
   std::array<PowerState, kNumAxes> power{};
   LineLevels lines{};
   int num_broken_rungs = 0;

@@ -26,6 +26,7 @@ PlantTruth RobotPlant::truth() const {
     const auto index = static_cast<std::size_t>(axis);
     truth.joint_rad[index] = drive(axis).measured_rad();
     truth.joint_rad_s[index] = drive(axis).motor().velocity_rad_s();
+    truth.joint_Nm[index] = drive(axis).motor().torque_Nm();
     truth.power[index] = drive(axis).power_state();
   }
   const auto rungs = world_.rungs();
