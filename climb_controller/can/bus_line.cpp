@@ -12,6 +12,17 @@ void BusLine::begin_poll(std::int64_t now_us) {
   if (was_usable && !is_usable_) raise(FaultCause::kInterfaceLost, -1, 0);
 }
 
+void BusLine::watch_unsent(std::int64_t max_us) {
+  if (!is_busy()) {
+    unsent_since_us_ = -1;
+    return;
+  }
+  if (unsent_since_us_ < 0) unsent_since_us_ = now_us_;
+  const std::int64_t unsent_us = now_us_ - unsent_since_us_;
+  if (unsent_us < max_us) return;
+  raise(FaultCause::kTransmitStalled, -1, static_cast<std::uint32_t>(unsent_us / 1000));
+}
+
 bool BusLine::receive(ReceivedFrame& received) {
   while (true) {
     const TransferStatus status = transport_.receive(received);
@@ -71,6 +82,7 @@ bool BusLine::send(const CanFrame& frame) {
   const TransferStatus status = transport_.send(frame);
   switch (status) {
     case TransferStatus::kDone:
+      if (unsent_since_us_ < 0) unsent_since_us_ = now_us_;
       if (recorder_ != nullptr) {
         recorder_->record(now_us_, FlightRecorder::Direction::kSent, frame);
       }

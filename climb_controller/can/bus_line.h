@@ -38,6 +38,13 @@ class BusLine {
   /// A frame that ought to be ours but makes no sense.
   void count_malformed();
 
+  /// Frames wait to leave: whoever sends out of turn waits for them.
+  bool is_busy() const { return is_usable_ && transport_.has_unsent_frames(); }
+
+  /// A frame handed over so long ago that has not left = fault: the watch where nothing is sent in
+  /// cycles.
+  void watch_unsent(std::int64_t max_us);
+
   /// False: this cycle must stay silent, because frames of an earlier one have not left yet.
   bool begin_cycle();
 
@@ -68,6 +75,7 @@ class BusLine {
   bool is_faulted_ = false;
   bool is_cycle_complete_ = true;
   int num_stalled_cycles_ = 0;
+  std::int64_t unsent_since_us_ = -1;  ///< the first frame after the last time that none waited
   std::array<std::int64_t, 32> malformed_us_{};  ///< times of the last malformed frames, a ring
   std::uint64_t num_malformed_ = 0;
   std::uint64_t num_malformed_at_clear_ = 0;

@@ -60,11 +60,19 @@ void Cia402Axis::forget(std::int64_t now_us) {
 }
 
 void Cia402Axis::raise(BusLine& line, FaultCause cause, std::uint32_t detail) {
-  if (cause != FaultCause::kWarning) {
-    is_broken_ = true;
-    if (goal_ == Goal::kEnabled) goal_ = Goal::kKeep;
-  }
+  if (cause != FaultCause::kWarning) break_off(cause == FaultCause::kSilent);
   line.raise(cause, index_, detail);
+}
+
+void Cia402Axis::break_off(bool is_silent) {
+  is_broken_ = true;
+  if (goal_ == Goal::kEnabled) goal_ = Goal::kKeep;
+  keep_stopped();
+  // Who is not heard may not hear us either, and then stops by itself: 0Fh on our view from before
+  // would undo that as soon as it listens again. A drive that would go limp is told nothing new.
+  if (goal_ == Goal::kKeep && is_silent && !sdo_.lacks(Part::kHoldOnLoss)) {
+    set_goal(Goal::kQuickStop);
+  }
 }
 
 bool Cia402Axis::take(const CanFrame& frame, BusLine& line, std::int64_t now_us) {
@@ -115,6 +123,7 @@ bool Cia402Axis::take_tpdo2(const CanFrame& frame) {
 void Cia402Axis::take_status(const cia402::Tpdo1& pdo) {
   status_word_ = pdo.status_word;
   state_ = cia402::state_of(pdo.status_word);
+  keep_stopped();
   position_counts_ = pdo.position_counts;
   torque_permille_ = pdo.torque_permille.value_or(0);
   // Until it follows targets, the target is where it stands.
@@ -199,6 +208,13 @@ void Cia402Axis::set_goal(Goal goal) {
   if (goal == Goal::kDisabled || goal == Goal::kNoTorque) expects_torque_ = false;
   if (goal == Goal::kQuickStop) may_quick_stop_ = true;  // and until it is enabled again
   goal_ = goal;
+  keep_stopped();
+}
+
+void Cia402Axis::keep_stopped() {
+  // An enabling word still on its way may wake up one that holds by itself: it is stopped again,
+  // else it would be told 0Fh and 0Bh in turns.
+  if (goal_ == Goal::kKeep && state_ == DriveState::kQuickStopActive) goal_ = Goal::kQuickStop;
 }
 
 bool Cia402Axis::offer_target(const AxisTarget& target) {

@@ -73,6 +73,9 @@ class Cia402Axis {
   void take_emergency(const cia402::Emergency& emergency, BusLine& line);
   void take_heartbeat(cia402::NmtState state, BusLine& line, std::int64_t now_us);
   void raise(BusLine& line, FaultCause cause, std::uint32_t detail);
+  void break_off(bool is_silent);
+  /// What is seen holding by itself, and is to stay as it is, goes on holding by itself.
+  void keep_stopped();
 
   AxisConfig config_;
   int index_;

@@ -76,6 +76,7 @@ void Cia402Bus::advance_phase() {
 }
 
 void Cia402Bus::advance_configuration() {
+  if (line().is_busy()) return;  // a request that waits behind others would be answered late
   bool all_done = true;
   for (Cia402Axis& axis : axes_) {
     while (const auto frame = axis.sdo().next_frame(now_us())) {

@@ -119,8 +119,9 @@ bool OdriveBus::all_heard() const {
 }
 
 bool OdriveBus::all_in(AxisState state) const {
-  return std::all_of(axes_.begin(), axes_.end(),
-                     [state](const Axis& axis) { return axis.reported == state; });
+  return std::all_of(axes_.begin(), axes_.end(), [state](const Axis& axis) {
+    return axis.reported == state && !axis.is_doubted;
+  });
 }
 
 void OdriveBus::advance_phase() {
@@ -186,6 +187,7 @@ void OdriveBus::take(const ReceivedFrame& received) {
 bool OdriveBus::take(Axis& axis, int index, const CanFrame& frame) {
   if (const auto heartbeat = odrive::decode_heartbeat(frame)) {
     axis.has_heartbeat = true;
+    axis.is_doubted = false;
     axis.heartbeat_us = now_us();
     axis.error = heartbeat->axis_error;
     axis.reported = static_cast<AxisState>(heartbeat->axis_state);
@@ -260,6 +262,14 @@ void OdriveBus::fill(std::span<AxisFeedback> feedback) const {
 }
 
 void OdriveBus::send_cycle(const Targets& targets) {
+  const bool was_away = now_us() - cycle_us_ > params_.max_missed_cycles * params_.cycle_us;
+  cycle_us_ = now_us();
+  // After a pause motors may have disarmed themselves, and the limb may have moved. Until each has
+  // said its state anew it gets only the target it had, which feeds the watchdog of one that holds,
+  // and is not armed.
+  if (was_away) {
+    for (Axis& axis : axes_) axis.is_doubted = true;
+  }
   take_targets(targets);
   for (Axis& axis : axes_) {
     if (!axis.has_position) continue;
@@ -271,7 +281,8 @@ void OdriveBus::send_cycle(const Targets& targets) {
     }
     const bool may_request = axis.wanted == AxisState::kIdle ? phase() != BusPhase::kReady
                                                              : phase() == BusPhase::kEnabling;
-    if (axis.wanted != axis.reported && axis.error == 0 && may_request) {
+    const bool is_sound = axis.error == 0 && !axis.is_doubted;
+    if (axis.wanted != axis.reported && is_sound && may_request) {
       if (!line().send(encode(odrive::SetAxisState{axis.config.node_id, axis.wanted}))) return;
     }
   }
@@ -293,7 +304,8 @@ bool OdriveBus::offer_target(int index, const AxisTarget& target) {
 
 void OdriveBus::accept_offered() {
   for (Axis& axis : axes_) {
-    if (axis.wanted == AxisState::kClosedLoopControl) axis.command = axis.offered;
+    const bool follows = axis.wanted == AxisState::kClosedLoopControl && !axis.is_doubted;
+    if (follows) axis.command = axis.offered;
   }
 }
 

@@ -49,6 +49,7 @@ class OdriveBus final : public PhasedBus {
     float current_A = 0;
     bool has_current = false;
     bool expects_torque = false;
+    bool is_doubted = false;  ///< its state was told before a pause of ours
     odrive::InputPos command;
     odrive::InputPos offered;
   };
@@ -78,6 +79,7 @@ class OdriveBus final : public PhasedBus {
   std::vector<Axis> axes_;
   std::array<int, 64> axis_of_node_{};
   bool is_configured_ = false;
+  std::int64_t cycle_us_ = 0;  ///< of the last cycle
 };
 
 }  // namespace can

@@ -39,6 +39,7 @@ PhasedBus::PhasedBus(const BusParams& params, Transport& transport, FlightRecord
     : cycle_us_(params.cycle_us),
       listen_us_(params.listen_us),
       walk_timeout_us_(params.walk_timeout_us),
+      max_unsent_us_(params.line.max_stalled_cycles * params.cycle_us),
       faults_(static_cast<int>(params.axes.size())),
       recorder_(recorder),
       line_(transport, faults_, recorder, params.line) {}
@@ -100,6 +101,7 @@ bool PhasedBus::is_late() const {
 void PhasedBus::poll(std::int64_t now_us) {
   now_us_ = now_us;
   line_.begin_poll(now_us);
+  line_.watch_unsent(max_unsent_us_);
   receive_all();
   watch_time();
   advance();

@@ -87,6 +87,7 @@ class PhasedBus : public ServoBus {
   std::int64_t cycle_us_;
   std::int64_t listen_us_;
   std::int64_t walk_timeout_us_;
+  std::int64_t max_unsent_us_;
   FaultLog faults_;
   FlightRecorder* recorder_;
   BusLine line_;

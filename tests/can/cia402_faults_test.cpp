@@ -200,6 +200,43 @@ TEST(Cia402Faults, LateAnswersAfterAPauseAreAwaited) {
   }
 }
 
+// A drive that neither heard nor spoke has stopped by itself meanwhile. When it listens again it is
+// told to go on holding, not to follow the targets from before.
+TEST(Cia402Faults, SilentDriveComesBackStopped) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.drives[1].latches_on_sync = true;
+  rig.drives[1].is_silent = true;
+  rig.run_ms(200);
+  ASSERT_TRUE(rig.has(FaultCause::kSilent, 1));
+  rig.drives[1].set_status_word(0x0207);
+  rig.drives[1].is_silent = false;
+  for (int i = 0; i < 10; ++i) {
+    rig.cycle();
+    EXPECT_EQ(rig.drives[1].status_word(), 0x0207) << i;
+  }
+  EXPECT_EQ(rig.drives[0].control_word(), 0x0F);
+}
+
+// Enabling that fails while the enabling words are on their way: drives that held by themselves
+// hold again after one cycle, and are not told 0Fh and 0Bh in turns.
+TEST(Cia402Faults, FailedEnablingLeavesDrivesStopped) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_to_enabled());
+  rig.bus->stop(StopKind::kQuickStop);
+  rig.run_ms(50);
+  for (ScriptedDrive& drive : rig.drives) drive.latches_on_sync = true;
+  ASSERT_TRUE(rig.bus->enable());
+  rig.cycle();
+  rig.line.put(from_hex("082#1186210000000000"));
+  rig.run_ms(30);
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kStopped);
+  for (int i = 0; i < 10; ++i) {
+    rig.cycle();
+    for (const ScriptedDrive& drive : rig.drives) EXPECT_EQ(drive.status_word(), 0x0207) << i;
+  }
+}
+
 // Targets that are no numbers, do not fit or are old are refused whole: all axes keep the last.
 TEST(Cia402Faults, RefusedTargets) {
   struct Row {

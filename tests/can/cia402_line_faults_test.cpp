@@ -168,6 +168,24 @@ TEST(Cia402LineFaults, StaleFramesAreNeverSent) {
   EXPECT_EQ(rig.drives[0].target(), -444);  // from the measured position, not from the old target
 }
 
+// Also while drives are configured, when nothing is sent in cycles: a request that waits to leave
+// is not followed by others, and is purged after two cycles.
+TEST(Cia402LineFaults, RequestsThatWaitAreNeverSentLate) {
+  BusRig rig(1);
+  rig.drives[0].sdo_delay_ms = 5;
+  rig.build();
+  rig.cycle();
+  rig.bus->configure();
+  ASSERT_TRUE(rig.run_until(BusPhase::kConfiguring, 1000));
+  rig.run_ms(20);
+  const std::size_t before = rig.line.sent.size();
+  rig.line.has_unsent = true;
+  rig.run_ms(30);
+  EXPECT_TRUE(rig.has(FaultCause::kTransmitStalled, -1));
+  EXPECT_EQ(rig.line.num_purges, 1);
+  EXPECT_LE(rig.line.sent.size(), before + 1);  // a heartbeat
+}
+
 // Where nothing could be purged, nothing is sent again before it can.
 TEST(Cia402LineFaults, WithoutPurgeNothingIsSent) {
   BusRig rig(1);

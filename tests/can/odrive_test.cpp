@@ -95,12 +95,15 @@ class OdriveRig {
       }
     }
   }
-  bool bring_to_enabled() {
+  bool bring_to_ready() {
     target.position_rad = 1.0;
     run_ms(10);
     bus->configure();
     run_ms(600);
-    if (!bus->enable()) return false;
+    return bus->phase() == BusPhase::kReady;
+  }
+  bool bring_to_enabled() {
+    if (!bring_to_ready() || !bus->enable()) return false;
     run_ms(300);
     return bus->phase() == BusPhase::kEnabled;
   }
@@ -153,6 +156,34 @@ TEST(OdriveBus, Faults) {
             "target refused");
   EXPECT_EQ(cause_after([](OdriveRig& rig) { rig.line.send_status = TransferStatus::kNoBuffers; }),
             "transmit stalled");
+}
+
+// After a pause of ours a motor may have disarmed itself and the limb may hang elsewhere: before
+// its heartbeat has said its state anew it gets no new target.
+TEST(OdriveBus, PauseIsNotFollowedByNewTargets) {
+  OdriveRig rig;
+  ASSERT_TRUE(rig.bring_to_enabled());
+  while (rig.time_ms % 100 != 0) rig.run_ms(10);
+  rig.time_ms += 210;
+  rig.target.position_rad = 2.0;
+  rig.run_ms(80);
+  EXPECT_EQ(rig.motor.estimates, "0000803F");
+  rig.run_ms(40);
+  EXPECT_EQ(rig.motor.estimates, "00000040");
+}
+
+// The same while motors are being armed: none is armed on its word from before.
+TEST(OdriveBus, PauseEndsArmingUntilTheMotorSpeaks) {
+  OdriveRig rig;
+  ASSERT_TRUE(rig.bring_to_ready());
+  while (rig.time_ms % 100 != 0) rig.run_ms(10);
+  ASSERT_TRUE(rig.bus->enable());
+  rig.time_ms += 210;
+  rig.run_ms(80);
+  EXPECT_EQ(rig.motor.state, 1);
+  rig.run_ms(200);
+  EXPECT_EQ(rig.motor.state, 8);
+  EXPECT_EQ(rig.bus->phase(), BusPhase::kEnabled);
 }
 
 // After an error: rearm() clears it, and arming waits for enable().

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "can/can_frame.h"
@@ -24,7 +25,9 @@ class ScriptedDrive {
   bool has_heartbeat = true;
   bool ignores_control_word = false;
   bool is_stuck = false;  ///< enabled, but stands
-  int sdo_delay_ms = 0;   ///< one request after the other, each takes so long
+  /// As the standard has it: a command waits for SYNC, whose answer is the state before it.
+  bool latches_on_sync = false;
+  int sdo_delay_ms = 0;  ///< one request after the other, each takes so long
   std::int32_t position = 1000;
   std::map<std::uint32_t, std::uint32_t> aborts;      ///< object -> abort code, read and write
   std::map<std::uint32_t, std::uint32_t> reads_back;  ///< object -> another value than written
@@ -82,8 +85,11 @@ class ScriptedDrive {
       requests_.push_back(frame);
       return {};
     }
-    if (frame.id == 0x200U + node_ && network_ == 0x05) return take_command(frame);
-    if (frame.id == 0x080 && network_ == 0x05 && !is_mute_on_sync) return {state_frame()};
+    if (frame.id == 0x200U + node_ && network_ == 0x05) {
+      if (!latches_on_sync) return take_command(frame);
+      latched_ = {frame};
+    }
+    if (frame.id == 0x080 && network_ == 0x05) return answer_sync();
     return {};
   }
 
@@ -101,6 +107,13 @@ class ScriptedDrive {
   }
 
  private:
+  std::vector<CanFrame> answer_sync() {
+    std::vector<CanFrame> answers;
+    if (!is_mute_on_sync) answers.push_back(state_frame());
+    for (const CanFrame& command : std::exchange(latched_, {})) take_command(command);
+    return answers;
+  }
+
   static CanFrame make(std::uint32_t id, const std::vector<int>& bytes) {
     CanFrame frame;
     frame.id = id;
@@ -236,6 +249,7 @@ class ScriptedDrive {
   std::uint16_t max_torque_ = 0;
   int num_fault_resets_ = 0;
   int num_wrong_lengths_ = 0;
+  std::vector<CanFrame> latched_;  ///< the command that waits for SYNC
   std::vector<CanFrame> requests_;
   int request_age_ms_ = 0;
   std::map<std::uint32_t, std::uint32_t> objects_;
