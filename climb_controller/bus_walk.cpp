@@ -47,9 +47,10 @@ void BusWalk::obey(DriveRequest request, bool has_targets) {
   if (is_resetting_) return;  // nothing is followed meanwhile
   if (request != DriveRequest::kQuickStop) is_quick_stopped_ = false;
   const BusPhase phase = bus_.phase();
+  const bool is_powering = phase == BusPhase::kEnabled || phase == BusPhase::kEnabling;
   switch (request) {
     case DriveRequest::kNone:
-      if (phase == BusPhase::kEnabled && !has_targets) bus_.stop(can::StopKind::kQuickStop);
+      if (is_powering && !has_targets) bus_.stop(can::StopKind::kQuickStop);
       return;
     case DriveRequest::kEnable:
       bus_.enable();  // no effect while it is enabling
@@ -57,9 +58,7 @@ void BusWalk::obey(DriveRequest request, bool has_targets) {
     case DriveRequest::kHold:
       // By themselves: whoever arms next begins at the measured place, and drives that still
       // followed the last target would be given a step by that.
-      if (phase == BusPhase::kEnabled || phase == BusPhase::kEnabling) {
-        bus_.stop(can::StopKind::kQuickStop);
-      }
+      if (is_powering) bus_.stop(can::StopKind::kQuickStop);
       return;
     case DriveRequest::kQuickStop:
       if (!is_quick_stopped_) is_quick_stopped_ = bus_.stop(can::StopKind::kQuickStop);

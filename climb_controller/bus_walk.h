@@ -28,7 +28,8 @@ class BusWalk {
   void begin_reset(std::int64_t now_us);
   bool is_resetting() const { return is_resetting_; }
 
-  /// Without a request a bus that follows targets needs some every cycle: else it holds.
+  /// Without a request a bus that follows targets needs some every cycle: else it holds. One that
+  /// is still enabling is no longer wanted.
   void obey(climb::DriveRequest request, bool has_targets);
 
   /// All objects of all drives are as they should be; capabilities are known.

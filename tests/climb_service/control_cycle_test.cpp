@@ -55,6 +55,26 @@ TEST(ControlCycle, EstopIsLatchedUntilReset) {
   EXPECT_EQ(bench.violations(), "");
 }
 
+// Arming that is called off while the drives are being enabled ends there: no drive is enabled
+// after the operator's HOLD.
+TEST(ControlCycle, HoldEndsEnabling) {
+  CycleBench bench;
+  ASSERT_TRUE(bench.reach(ControllerState::kDisarmed));
+  ASSERT_EQ(bench.order(Order::kArm), CommandVerdict::kAccepted);
+  ASSERT_EQ(bench.report.bus_phase, can::BusPhase::kEnabling);
+  ASSERT_EQ(bench.order(Order::kHold), CommandVerdict::kAccepted);
+  for (int i = 0; i < 20; ++i) {
+    bench.step();
+    for (const simulator::CarriedFrame& frame : bench.carried) {
+      const bool is_target = frame.frame.id > 0x200 && frame.frame.id <= 0x210;
+      const bool enables = (frame.frame.bytes[0] & 0x0F) == 0x0F;
+      EXPECT_FALSE(is_target && enables) << "cycle " << i;
+    }
+  }
+  EXPECT_EQ(bench.state(), ControllerState::kDisarmed);
+  EXPECT_TRUE(arm(bench)) << bench.problems();
+}
+
 simulator::PlantParams without_hold_on_loss() {
   simulator::PlantParams params;
   for (simulator::DriveParams& drive : params.drives) drive.objects.abort_connection_option = false;
