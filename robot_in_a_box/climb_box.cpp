@@ -17,6 +17,12 @@ climb_controller::CycleParams cycle_params(const ClimbBoxParams& params) {
   return cycle;
 }
 
+simulator::MonitorParams monitor_params(const ClimbBoxParams& params, int master_port) {
+  simulator::MonitorParams monitor(params.plant);
+  monitor.master_port = master_port;
+  return monitor;
+}
+
 }  // namespace
 
 ClimbBox::ClimbBox(const ClimbBoxParams& params)
@@ -29,7 +35,7 @@ ClimbBox::ClimbBox(const ClimbBoxParams& params)
       perception_(params.perception, params.seed),
       master_(servo_bus_params(params.drives, params.cycle.controller.climb), transport_),
       cycle_(cycle_params(params), master_),
-      monitor_(simulator::MonitorParams(params.plant)) {
+      monitor_(monitor_params(params, transport_.port())) {
   bus_.record(true);
   monitor_.on_truth(plant_.truth());
 }
@@ -46,6 +52,11 @@ void ClimbBox::cycle() {
   const std::int64_t end_us = now_us_ + kCycle_us;
   while (now_us_ < end_us) millisecond();
   if (now_us_ >= hung_until_us_) step();
+}
+
+void ClimbBox::pause_until(std::int64_t until_us) {
+  hung_until_us_ = until_us;
+  monitor_.on_pause(now_us_, until_us);
 }
 
 void ClimbBox::millisecond() {

@@ -80,8 +80,8 @@ class ClimbBox {
   void send_foreign(const simulator::BusFrame& frame);
 
   // --- what may happen to the controller's process and its sensors -------------------------------
-  void kill() { hung_until_us_ = INT64_MAX; }  ///< gone, without a word
-  void hang(std::int64_t duration_us) { hung_until_us_ = now_us_ + duration_us; }
+  void kill() { pause_until(INT64_MAX); }  ///< gone, without a word
+  void hang(std::int64_t duration_us) { pause_until(now_us_ + duration_us); }
   void flag_fault(climb::Fault fault) { flags_ |= climb::flag(fault); }  ///< found by the service
   void clear_flag(climb::Fault fault) { flags_ &= ~climb::flag(fault); }
   void sleep(std::int64_t duration_us) { slept_us_ += duration_us; }  ///< of the machine
@@ -94,6 +94,7 @@ class ClimbBox {
   std::uint64_t frame_hash() const { return frame_hash_; }
 
  private:
+  void pause_until(std::int64_t until_us);
   void millisecond();
   void observe();
   void step();

@@ -11,6 +11,7 @@ namespace simulator {
 namespace {
 
 constexpr std::int32_t kSameCounts = 2;
+constexpr double kToldOpen_rad = 0.02;  ///< beyond where it stands, for a jaw told to open
 constexpr std::uint16_t kUnderVoltageWarning = 0x3120;
 constexpr std::uint16_t kTemperatureWarning = 0x4310;
 
@@ -85,19 +86,27 @@ void Monitor::on_frame(const CarriedFrame& carried) {
 }
 
 void Monitor::on_master_frame(const CarriedFrame& carried) {
+  const bool is_judged = params_.master_port < 0 || carried.port == params_.master_port;
+  if (is_judged) check_line(carried);
+  const std::uint32_t id = carried.frame.id;
+  const std::uint32_t node = id & 0x7F;
+  const bool is_target = id > 0x200 && id < 0x280 && is_axis_node(node);
+  if (is_target && carried.frame.length >= 6) on_target(carried, static_cast<int>(node) - 1);
+}
+
+void Monitor::check_line(const CarriedFrame& carried) {
   const std::int64_t now_us = carried.time_us;
   const std::uint32_t id = carried.frame.id;
   if (bus_fault_us_ && now_us > *bus_fault_us_ + params_.latch_reaction_us) {
     violate(now_us, 7, -1,
             text_of("frame %03X sent %.1f ms after a bus fault", id, ms(now_us - *bus_fault_us_)));
   }
-  const std::int64_t age_us = now_us - carried.handed_over_us;
+  const std::int64_t paused_us = std::max<std::int64_t>(
+      0, std::min(now_us, paused_until_us_) - std::max(carried.handed_over_us, paused_from_us_));
+  const std::int64_t age_us = now_us - carried.handed_over_us - paused_us;
   if (age_us > 2 * params_.cycle_us) {
     violate(now_us, 9, -1, text_of("frame %03X left %.1f ms late", id, ms(age_us)));
   }
-  const std::uint32_t node = id & 0x7F;
-  const bool is_target = id > 0x200 && id < 0x280 && is_axis_node(node);
-  if (is_target && carried.frame.length >= 6) on_target(carried, static_cast<int>(node) - 1);
 }
 
 void Monitor::on_target(const CarriedFrame& carried, int axis_index) {
@@ -149,7 +158,9 @@ void Monitor::check_stop(std::int64_t now_us, int axis_index, std::int32_t targe
   Axis& axis = axes_[static_cast<std::size_t>(axis_index)];
   const std::int32_t change = target - axis.target;
   if (!stop_since_us_ || now_us <= *stop_since_us_ + params_.stop_reaction_us) {
-    axis.stop_speed = std::max(kSameCounts, std::abs(change));
+    const double scale = params_.drives[static_cast<std::size_t>(axis_index)].counts_per_rad;
+    const double slack = params_.stop_slack_rad_s * 1e-6 * static_cast<double>(params_.cycle_us);
+    axis.stop_speed = std::max(static_cast<std::int32_t>(slack * scale), std::abs(change));
     return;
   }
   const int sign = params_.drives[static_cast<std::size_t>(axis_index)].sign;
@@ -169,6 +180,10 @@ void Monitor::check_release(std::int64_t now_us, int axis_index, std::int32_t ta
   const bool opens = angle_rad(axis_index, target) > params_.jaw_open_rad;
   const bool begins = opens && !leg.open_commanded;
   leg.open_commanded = opens;
+  const Axis& jaw = axes_[static_cast<std::size_t>(axis_index)];
+  const bool beyond = !jaw.has_measured || angle_rad(axis_index, target) >
+                                               angle_rad(axis_index, jaw.measured) + kToldOpen_rad;
+  if (beyond) leg.told_open_us = now_us;
   if (!begins || !leg.holds || docked_ || fallen_ || !has_truth_) return;
   const int others = num_confirmed_others(leg_of(axis_index), now_us - params_.confirmed_within_us);
   if (others >= 3) return;
@@ -222,7 +237,9 @@ void Monitor::check_loss(const PlantTruth& truth, int leg_index) {
   Leg& leg = legs_[static_cast<std::size_t>(leg_index)];
   const LegTruth& now = truth.legs[static_cast<std::size_t>(leg_index)];
   if (!leg.holds || now.holds) return;
-  if (now.last_loss != LossCause::kOpened) {
+  // A jaw that was told to close, and opens, obeys a broken drive.
+  const bool was_told = truth.time_us - leg.told_open_us <= params_.opening_us;
+  if (now.last_loss != LossCause::kOpened || !was_told) {
     leg.taken_us = truth.time_us;
     return;
   }
@@ -273,6 +290,11 @@ void Monitor::on_stop(std::int64_t now_us, int reason) {
 void Monitor::on_run(std::int64_t now_us) {
   static_cast<void>(now_us);
   stop_reason_.reset();
+}
+
+void Monitor::on_pause(std::int64_t from_us, std::int64_t until_us) {
+  paused_from_us_ = from_us;
+  paused_until_us_ = until_us;
 }
 
 }  // namespace simulator

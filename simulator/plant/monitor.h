@@ -42,10 +42,16 @@ struct MonitorParams {
   double jaw_open_rad = -0.36;  ///< a jaw commanded beyond lets a rung go
   std::int64_t stop_reaction_us = 20'000;
   std::int64_t stop_run_out_us = 150'000;
+  /// So fast any joint may be while it runs out: one that just turned round on its path gets faster
+  /// for a while although the foot gets slower.
+  double stop_slack_rad_s = 0.1;
   std::int64_t confirmed_within_us = 50'000;
   std::int64_t opening_us = 300'000;  ///< from a pressed jaw to a lost rung, at most
   std::int64_t excused_us = 100'000;  ///< after the plant took a grasp away
   std::int64_t latch_reaction_us = 10'000;
+  /// Of the master that is judged; frames of others only a master sends may come at any time and
+  /// age. -1: whoever speaks as a master.
+  int master_port = -1;
 
   /// Limits of the robot's page; drives as in `plant`.
   explicit MonitorParams(const PlantParams& plant);
@@ -76,6 +82,8 @@ class Monitor {
   /// The controller says that it stopped, with its primary reason (0 = none told), or runs again.
   void on_stop(std::int64_t now_us, int reason);
   void on_run(std::int64_t now_us);
+  /// The master's process does not run: what waits in its queue it cannot take back meanwhile.
+  void on_pause(std::int64_t from_us, std::int64_t until_us);
 
   /// The first kMaxKept in order of time.
   const std::vector<Violation>& violations() const { return violations_; }
@@ -99,9 +107,11 @@ class Monitor {
     std::int64_t confirmed_us = -1'000'000;
     std::int64_t taken_us = -1'000'000'000;  ///< by the plant
     bool open_commanded = false;
+    std::int64_t told_open_us = -1'000'000'000;  ///< last target beyond where the jaw stands
   };
 
   void on_master_frame(const CarriedFrame& carried);
+  void check_line(const CarriedFrame& carried);
   void on_target(const CarriedFrame& carried, int axis);
   void on_node_frame(const CarriedFrame& carried);
   void check_limits(std::int64_t now_us, int axis, std::int32_t target);
@@ -124,6 +134,8 @@ class Monitor {
   std::optional<std::int64_t> stop_since_us_;
   std::optional<std::int64_t> bus_fault_us_;
   std::optional<int> stop_reason_;
+  std::int64_t paused_from_us_ = 0;
+  std::int64_t paused_until_us_ = 0;
   std::vector<Violation> violations_;
   std::int64_t num_violations_ = 0;
   std::int64_t num_targets_ = 0;

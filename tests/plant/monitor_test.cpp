@@ -99,6 +99,20 @@ TEST(Monitor, ExcusesThePlantOnlyForAWhile) {
   EXPECT_THAT(run.broken(), ElementsAre(1, 3));
 }
 
+// A jaw whose drive turns the wrong way opens although it was told to close: no fault of the
+// controller. Opening another one a second later is.
+TEST(Monitor, ExcusesAJawAgainstItsCommand) {
+  WatchedBench run;
+  run.start();
+  run.bench.plant.drive(axis_of(0, 3)).motor().reversed = true;
+  run.cycles(100);
+  EXPECT_EQ(run.bench.plant.truth().legs[0].last_loss, LossCause::kOpened);
+  EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+  run.bench.move_jaw(1, 1.2);
+  run.cycles(30);
+  EXPECT_EQ(run.broken().count(1), 1U);
+}
+
 // Releasing the dock with nothing in the claws is a violation of I1.
 TEST(Monitor, SeesUndockingWithoutGrasps) {
   WatchedBench run{PlantParams{}};
@@ -222,6 +236,38 @@ TEST(Monitor, SeesStaleFrames) {
   run.bench.bus.set_condition(BusCondition::kUp, run.bench.now_us);
   run.cycles(1);
   EXPECT_EQ(run.broken().count(9), 1U);
+}
+
+// A process that did not run could not take back what it had handed over; that it ran again for
+// long enough is seen.
+TEST(Monitor, ExcusesLateFramesOfAPause) {
+  Monitor monitor{MonitorParams(PlantParams{})};
+  BusFrame sync;
+  sync.id = 0x080;
+  monitor.on_pause(1'005'000, 1'200'000);
+  monitor.on_frame({1'210'000, 1'000'000, 0, sync});
+  EXPECT_EQ(monitor.num_violations(), 0);
+  monitor.on_frame({1'217'000, 1'000'000, 0, sync});
+  EXPECT_EQ(monitor.num_violations(), 1);
+}
+
+// What somebody else sends as a master, late and over a bus fault, is not the judged master's
+// doing.
+TEST(Monitor, KnowsWhoseFramesAreJudged) {
+  for (const int judged : {0, 1}) {
+    MonitorParams params{PlantParams{}};
+    params.master_port = judged;
+    Monitor monitor(params);
+    BusFrame sync;
+    sync.id = 0x080;
+    monitor.on_frame({1'000'000, 900'000, 1, sync});
+    BusFrame bus_off;
+    bus_off.id = kBusOffError;
+    bus_off.length = 8;
+    monitor.on_frame({1'000'000, 1'000'000, 2, bus_off});
+    monitor.on_frame({1'100'000, 1'100'000, 1, sync});
+    EXPECT_EQ(monitor.num_violations(), judged == 1 ? 2 : 0);
+  }
 }
 
 }  // namespace
