@@ -3,6 +3,7 @@
 // the controller, all in virtual time. Exit codes: 0 nothing missed, 1 something missed or not run,
 // 2 wrong arguments, 3 the results cannot be written.
 #include <cstdio>
+#include <cstdlib>
 
 #include <CLI/CLI.hpp>
 
@@ -78,6 +79,11 @@ int main(int argc, char** argv) {
   }
   if (!arguments.case_name.empty()) {
     const auto tell = [](const std::string& line) { std::puts(line.c_str()); };
+    const std::string& wanted = arguments.case_name;
+    if (wanted.rfind("seed:", 0) == 0) {
+      tell_seed(std::strtoull(wanted.c_str() + 5, nullptr, 10), tell);
+      return 0;
+    }
     return replay_case(arguments.case_name, arguments.drill.seed, tell) ? 0 : kExitArguments;
   }
   const DrillReport report = run(arguments);

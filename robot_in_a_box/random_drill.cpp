@@ -8,7 +8,6 @@
 #include "robot_in_a_box/drill.h"
 #include "robot_in_a_box/drill_tables.h"
 #include "robot_in_a_box/fork_pool.h"
-#include "simulator/plant/fault_script.h"
 
 namespace robot_in_a_box {
 namespace {
@@ -52,66 +51,6 @@ std::vector<Place> places(std::uint64_t first_seed, int num_seeds) {
   return all;
 }
 
-/// Faults of the plant by script; orders, sensors and the process by chance.
-class Trouble : public BoxWatcher {
- public:
-  Trouble(ClimbBox& box, std::uint64_t seed)
-      : box_(box), rng_(seed, 2), player_(script(seed, box), box.bus()) {}
-
-  void before(std::int64_t now_us) override { player_.apply(now_us, box_.plant(), box_.bus()); }
-  void on_frame(const simulator::CarriedFrame&) override {}
-  void on_truth(const simulator::PlantTruth&) override {}
-  void on_report(const climb_controller::CycleReport&) override {}
-
-  /// Before each cycle.
-  void act(bool may_begin) {
-    if (rng_.below(60) == 0) give_order();
-    box_.imu_silent = box_.imu_silent && rng_.below(20) != 0;
-    box_.perception().silent = box_.perception().silent && rng_.below(40) != 0;
-    if (rng_.below(50) == 0) box_.perception().nonsense = Nonsense::kNone;
-    if (!may_begin || rng_.below(150) != 0) return;
-    switch (rng_.below(6)) {
-      case 0:
-        return box_.hang(5'000 * (1 + rng_.below(60)));
-      case 1:
-        box_.imu_silent = true;
-        return;
-      case 2:
-        box_.perception().silent = true;
-        return;
-      case 3:
-        box_.perception().nonsense = static_cast<Nonsense>(1 + rng_.below(7));
-        return;
-      case 4:
-        return box_.sleep(100'000 * (1 + rng_.below(100)));
-      default:
-        box_.perception().withdrawn_rung = static_cast<int>(rng_.below(9));
-    }
-  }
-
- private:
-  static std::vector<simulator::Fault> script(std::uint64_t seed, const ClimbBox& box) {
-    base::Rng rng(seed, 3);
-    simulator::RandomFaultParams random;
-    random.num_faults = 1 + static_cast<int>(rng.below(4));
-    random.from_us = box.now_us();
-    random.until_us = box.now_us() + 4'000'000;
-    random.num_rungs = box.plant().world().num_rungs();
-    return simulator::random_faults(rng.next(), random);
-  }
-  void give_order() {
-    using climb::Order;
-    constexpr std::array<Order, 8> kOrders = {Order::kArm,   Order::kClimb, Order::kClimb,
-                                              Order::kPause, Order::kHold,  Order::kReset,
-                                              Order::kReset, Order::kArm};
-    box_.order(kOrders[rng_.below(8)]);
-  }
-
-  ClimbBox& box_;
-  base::Rng rng_;
-  simulator::FaultPlayer player_;
-};
-
 /// What a copy hands back, as bytes.
 struct Outcome {
   std::uint64_t frame_hash = 0;
@@ -120,13 +59,17 @@ struct Outcome {
   std::array<char, 200> first_violation{};
 };
 
-std::string live_through(ClimbBox& box, std::uint64_t seed) {
-  Trouble trouble(box, seed);
+void live_through(ClimbBox& box, std::uint64_t seed, const Tell& tell) {
+  Trouble trouble(box, seed, {}, tell);
   box.watch(&trouble);
   for (int i = 0; i < kNumCycles; ++i) {
     trouble.act(i < kNumCycles - kNumQuietCycles);
     box.cycle();
   }
+  box.watch(nullptr);
+}
+
+std::string outcome_of(const ClimbBox& box) {
   Outcome outcome{
       box.frame_hash(), box.monitor().num_targets(), box.monitor().num_violations(), {}};
   if (!box.monitor().violations().empty()) {
@@ -178,13 +121,24 @@ std::vector<SeedResult> run_random(std::uint64_t first_seed, int num_seeds, int 
     SeedResult& result = results[place.index];
     result.seed = place.seed;
     result.situation = describe(situation_of(box));
-    pool.run([&] { return live_through(box, place.seed); },
-             [&result](bool ended_well, const std::string& bytes) {
-               take_outcome(ended_well, bytes, result);
-             });
+    pool.run(
+        [&] {
+          live_through(box, place.seed, {});
+          return outcome_of(box);
+        },
+        [&result](bool ended_well, const std::string& bytes) {
+          take_outcome(ended_well, bytes, result);
+        });
   });
   pool.finish();
   return results;
+}
+
+void tell_seed(std::uint64_t seed, const Tell& tell) {
+  visit(places(seed, 1), [&](const Place& place, ClimbBox& box) {
+    tell("seed " + std::to_string(seed) + ": " + describe(situation_of(box)));
+    live_through(box, place.seed, tell);
+  });
 }
 
 KillScore run_kills(std::uint64_t seed, int num_kills, int num_jobs) {

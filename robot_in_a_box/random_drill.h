@@ -9,6 +9,7 @@
 
 #include "robot_in_a_box/drill_case.h"
 #include "robot_in_a_box/tour.h"
+#include "robot_in_a_box/trouble.h"
 
 namespace robot_in_a_box {
 
@@ -23,6 +24,9 @@ struct SeedResult {
 
 /// At least five simulated seconds per seed after the tour was left. In the order of seeds.
 std::vector<SeedResult> run_random(std::uint64_t first_seed, int num_seeds, int num_jobs);
+
+/// One seed again, with everything that happens told.
+void tell_seed(std::uint64_t seed, const Tell& tell);
 
 /// The controller disappears at random instants while drives follow targets.
 struct KillScore {
