@@ -11,8 +11,6 @@
 namespace robot_in_a_box {
 namespace {
 
-constexpr std::size_t kMaxMissesTold = 5;
-
 std::uint64_t case_seed(std::uint64_t seed, std::size_t row, std::int64_t cycle, int target) {
   const auto place = static_cast<std::uint64_t>(cycle) * 64 + static_cast<std::uint64_t>(target);
   return base::Rng(seed + 1000 * row, place).next();
@@ -44,7 +42,8 @@ CaseResult result_from(bool ended_well, const std::string& bytes) {
   return result;
 }
 
-void count(const CaseResult& result, const std::string& what, RowScore& score) {
+void count(const CaseResult& result, const std::string& what, std::size_t num_told,
+           RowScore& score) {
   if (!result.visible && result.why[0] == '\0') {
     ++score.unseen;
     return;
@@ -53,7 +52,7 @@ void count(const CaseResult& result, const std::string& what, RowScore& score) {
   score.worst_us = std::max(score.worst_us, result.reaction_us);
   if (result.met) return;
   ++score.missed;
-  if (score.misses.size() < kMaxMissesTold) {
+  if (score.misses.size() < num_told) {
     score.misses.push_back(what + ": " + result.why.data());
   }
 }
@@ -110,8 +109,9 @@ DrillScore run_drill(const DrillOptions& options) {
           const std::string what =
               case_name(row, tour, journey.cycle, target) + " (" + describe(now) + ")";
           pool.run([&] { return bytes_of(CaseRun(journey.box, row, target, seed).run()); },
-                   [&score, i, what](bool ended_well, const std::string& bytes) {
-                     count(result_from(ended_well, bytes), what, score.rows[i]);
+                   [&score, &options, i, what](bool ended_well, const std::string& bytes) {
+                     count(result_from(ended_well, bytes), what, options.num_misses_told,
+                           score.rows[i]);
                    });
         }
       }

@@ -81,6 +81,7 @@ class CaseRun : public BoxWatcher {
   std::int64_t since_us() const { return now_us_ - injected_us_; }
   std::int64_t injected_us() const { return injected_us_; }
   std::int64_t visible_us() const { return visible_us_; }
+  std::int64_t bound_us() const { return row_.bound_us; }
   std::int64_t reacted_us() const { return reacted_us_; }
   const AxisWatch& axis(int index) const { return axes_[static_cast<std::size_t>(index)]; }
   /// Of the limb that is under way; else front left.

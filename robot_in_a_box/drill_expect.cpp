@@ -22,8 +22,12 @@ bool is_torqueless(const CaseRun& run, int but_for_axis) {
 
 bool still_moves(const CaseRun& run) {
   if (run.reacted_us() < 0) return false;
+  // Where it had stopped already the state tells nothing new: a limb that was being put down may
+  // go on for as long as the fault may stay unfound.
+  const bool had_stopped = is_latched(run.before().state);
+  const std::int64_t found_us = had_stopped ? run.visible_us() + run.bound_us() : run.reacted_us();
   for (int axis = 0; axis < kNumAxes; ++axis) {
-    const bool is_moved = run.axis(axis).moved_us > run.reacted_us() + kRunOut_us;
+    const bool is_moved = run.axis(axis).moved_us > found_us + kRunOut_us;
     if (!simulator::is_jaw(axis) && is_moved) return true;
   }
   return false;

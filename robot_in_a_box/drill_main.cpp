@@ -40,6 +40,7 @@ void parse(int argc, char** argv, Arguments& arguments, CLI::App& app) {
   app.add_option("--jobs", arguments.drill.num_jobs, "copies at a time; 0 = one per processor");
   app.add_option("--every", arguments.drill.every, "only each n-th situation")
       ->check(CLI::PositiveNumber);
+  app.add_option("--misses", arguments.drill.num_misses_told, "told per row (default 5)");
   app.add_option("--case", arguments.case_name, "one case again, told step by step");
   app.parse(argc, argv);
   arguments.drill.rows.insert(arguments.rows.begin(), arguments.rows.end());

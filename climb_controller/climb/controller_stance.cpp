@@ -36,6 +36,8 @@ bool Controller::may_put_down() const {
 void Controller::work_put_down(const ControllerInput& input) {
   const std::optional<Leg> leg = moving_leg();
   if (!leg || !may_put_down()) {
+    // Ended for good, though what ended it may pass: only a reset begins anew.
+    put_down_vain_ = put_down_vain_ || leg.has_value();
     putting_down_.reset();
     return;
   }

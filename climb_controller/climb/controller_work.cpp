@@ -51,7 +51,9 @@ void Controller::work_arming(const ControllerInput& input) {
   }
   if (const std::optional<Leg> leg = next_to_grasp()) {
     LimbCycle& limb = limbs_[*leg];
-    plan_ = planner_.dock(*leg, limb.lost_rung_id(), robot_now(input), ladder_of(input));
+    // What a claw is closed round is there: no rung to avoid.
+    const int avoid_rung_id = limb.confirmation().witness().jaw ? -1 : limb.lost_rung_id();
+    plan_ = planner_.dock(*leg, avoid_rung_id, robot_now(input), ladder_of(input));
     if (plan_.ready)
       limb.begin(plan_.goal);
     else if (in_state_s_ > params_.dock_timeout_s)
@@ -231,6 +233,7 @@ void Controller::move(const ControllerInput& input) {
     if (action_.close_claws && following_ && is_to_grip) limbs_[leg].close_jaw();
     LimbInput limb = limb_input(input, leg);
     limb.others_hold = limb.others_hold || parking_;  // in the dock
+    limb.docked = !hangs_ || parking_;
     limb.stop = !following_ || must_stop(leg);
     limb.follows = following_;
     limbs_[leg].step(limb);

@@ -43,6 +43,7 @@ void GraspConfirmation::update(const ClawReading& reading, double dt_s) {
   reading_ = reading;
   touch_s_ = counted(touch_s_, reading.touch, dt_s);
   open_s_ = counted(open_s_, !(reading.touch && in_window()), dt_s);
+  jaw_off_s_ = counted(jaw_off_s_, !in_window(), dt_s);
   if (open_s_ <= 0.0) grace_s_ = 0.0;
   const bool stands_open = reading.jaw_rad >= claw_.open_rad - params_.open_window_rad;
   stuck_s_ = counted(stuck_s_, reading.touch && stands_open, dt_s);

@@ -66,17 +66,19 @@ class GraspConfirmation {
   /// Touch and jaw say so in this very cycle.
   bool holds() const { return open_s_ <= 0.0; }
   /// A grasp that was confirmed and now lacks touch, or whose jaw left the window.
-  bool is_lost() const { return open_s_ >= params_.lost_s + grace_s_; }
+  bool is_lost() const {
+    return open_s_ >= params_.lost_s + grace_s_ || jaw_off_s_ >= params_.lost_s;
+  }
   bool is_touch_stuck() const { return stuck_s_ >= params_.stuck_s; }
   /// Witnesses contradicted each other max_disagreements times in a row.
   bool disagrees() const { return num_disagreements_ >= params_.max_disagreements; }
   int num_disagreements() const { return num_disagreements_; }
   void forgive() { num_disagreements_ = 0; }
   /// The jaw begins to press anew from where it was measured: until it does, but at most so long,
-  /// an open touch is no loss.
+  /// an open touch is no loss. A jaw that leaves its window is one all the same.
   void press_again(double within_s) {
     grace_s_ = within_s;
-    open_s_ = 0.0;
+    open_s_ = jaw_off_s_ = 0.0;
   }
 
  private:
@@ -88,6 +90,7 @@ class GraspConfirmation {
   ClawReading reading_;
   double touch_s_ = 0.0;
   double open_s_ = 0.0;
+  double jaw_off_s_ = 0.0;
   double grace_s_ = 0.0;
   double stuck_s_ = 0.0;
   int num_disagreements_ = 0;

@@ -165,14 +165,11 @@ void LimbCycle::work(const LimbInput& input) {
   const bool arrived = advance(input);
   switch (state_) {
     case S::kLoaded:
-      // Drives that stopped by themselves may press no more; the claw is round its rung still.
-      if (confirmation_.is_lost() && (input.follows || !confirmation_.witness().jaw)) {
-        take(LimbEvent::kLost);
-      }
+      if (has_lost(input)) take(LimbEvent::kLost);
       return;
     case S::kUnloading:
       target_.weight = 1.0 - path_part();
-      if (confirmation_.is_lost())
+      if (has_lost(input))
         take(LimbEvent::kLost);
       else if (arrived)
         work_release(input, arrived);
@@ -195,7 +192,7 @@ void LimbCycle::work(const LimbInput& input) {
       return;
     case S::kLoading:
       target_.weight = std::max(target_.weight, path_part());
-      if (confirmation_.is_lost())
+      if (has_lost(input))
         take(LimbEvent::kLost);
       else if (arrived)
         take(LimbEvent::kDone);
@@ -207,6 +204,11 @@ void LimbCycle::work(const LimbInput& input) {
     case S::kSupportLost:
       return;
   }
+}
+
+bool LimbCycle::has_lost(const LimbInput& input) const {
+  // Drives that stopped by themselves may press no more; the claw is round its rung still.
+  return confirmation_.is_lost() && (input.follows || !confirmation_.witness().jaw);
 }
 
 void LimbCycle::work_release(const LimbInput& input, bool arrived) {
@@ -271,6 +273,10 @@ void LimbCycle::give_up() {
 void LimbCycle::put_down(const LimbGoal& goal) {
   is_jaw_forced_ = false;
   spent_s_ = 0.0;
+  if (state_ == S::kRegrasp && confirmation_.witness().jaw) {
+    take(LimbEvent::kAbort);  // round its rung still: it closes again
+    return;
+  }
   const bool is_coming = state_ == S::kApproach && goal.rung_id == goal_.rung_id;
   const bool is_at_rung = state_ == S::kClosing || state_ == S::kVerify || state_ == S::kLoading;
   if (!moves_ || is_coming || is_at_rung) return;
@@ -343,6 +349,12 @@ void LimbCycle::return_home(const LimbInput& input, bool arrived) {
       if (arrived) take(LimbEvent::kDone);
       return;
   }
+}
+
+bool LimbCycle::must_stay_closed(const LimbInput& input) const {
+  // Not confirmed, but round something: on fewer than three others it is not let go (invariant 3).
+  return state_ == S::kRegrasp && !input.others_hold && !input.docked &&
+         confirmation_.witness().jaw;
 }
 
 bool LimbCycle::waits_too_long(const LimbInput& input) {

@@ -33,6 +33,7 @@ struct LimbInput {
   bool stop = false;        ///< slow down along the path and stand
   bool follows = true;      ///< drives follow targets, so a jaw that holds also presses
   bool others_hold = true;  ///< the three others, in this very cycle: else it is not released
+  bool docked = false;      ///< a dock bears the body: claws may open all the same
   double dt_s = 0.01;
 };
 
@@ -112,6 +113,7 @@ class LimbCycle {
   bool take(LimbEvent event);
   void enter(LimbState from);
   void work(const LimbInput& input);
+  bool has_lost(const LimbInput& input) const;
   void work_release(const LimbInput& input, bool arrived);
   void work_pregrasp(const LimbInput& input, bool arrived);
   void work_regrasp(const LimbInput& input);
@@ -123,6 +125,7 @@ class LimbCycle {
   void stay_home();
   double pull_N(const LimbInput& input) const;
   bool waits_too_long(const LimbInput& input);
+  bool must_stay_closed(const LimbInput& input) const;
 
   void move_foot(const Eigen::Vector3d& to_m, double speed_m_s);
   void move_joints(const LegAngles& to_rad, double min_duration_s);

@@ -78,7 +78,8 @@ double LimbCycle::path_part() const {
 
 void LimbCycle::move_jaw(const LimbInput& input) {
   if (input.stop && !is_jaw_forced_) return;
-  const double goal_rad = is_jaw_forced_ ? claw_.closed_rad : jaw_goal_rad_;
+  const bool closes = is_jaw_forced_ || must_stay_closed(input);
+  const double goal_rad = closes ? claw_.closed_rad : jaw_goal_rad_;
   const double step_rad = params_.jaw_speed_rad_s * input.dt_s;
   target_.jaw_rad += std::clamp(goal_rad - target_.jaw_rad, -step_rad, step_rad);
 }

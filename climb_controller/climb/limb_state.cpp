@@ -30,6 +30,7 @@ constexpr LimbTransition kTransitions[] = {
     // Withdrawn: while the claw still holds, it is simply loaded again.
     {S::kUnloading, E::kAbort, S::kLoading},
     {S::kReleasing, E::kAbort, S::kClosing},
+    {S::kRegrasp, E::kAbort, S::kClosing},  // needed, and not open yet
     {S::kRetracting, E::kAbort, S::kAbortReturn},
     {S::kTransit, E::kAbort, S::kAbortReturn},
     {S::kPregrasp, E::kAbort, S::kAbortReturn},
