@@ -139,7 +139,7 @@ void send_some_junk(CaseRun& run) {
   send_junk(run, 9);
 }
 bool holds_for_junk(const CaseRun& run) {
-  return holds_for(run, flag(Fault::kMalformedFrames) | flag(Fault::kServoState));
+  return holds_for(run, flag(Fault::kMalformedFrames));
 }
 bool takes_no_notice(const CaseRun& run) {
   return run.since_us() >= 300'000;

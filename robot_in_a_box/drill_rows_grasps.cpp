@@ -16,6 +16,11 @@ using climb::Order;
 using simulator::WireFault;
 using S = climb::ControllerState;
 
+/// A jaw that presses anew leaves its rung's window where no rung is: 0.10 of the 0.16 rad to its
+/// stop, its target at 5 rad/s and its drive 30 ms behind that. One cycle before, the first target
+/// is the measured one.
+constexpr std::int64_t kJawTravel_us = 50'000;
+
 bool in_climbing(const Situation& at) {
   return at.state == S::kClimbing;
 }
@@ -173,16 +178,32 @@ const char* harm_by_unloading(const CaseRun& run) {
   return run.truth().fallen ? nullptr : harm;
 }
 
+bool is_enabling(const Situation& at) {
+  return at.state == S::kArming && !at.follows;
+}
 bool has_stance(const Situation& at) {
-  return is_powered(at.state) || at.state == S::kArming || at.state == S::kFaultHold;
+  const bool may_hang = is_powered(at.state) || at.state == S::kArming;
+  return (may_hang && !is_enabling(at)) || at.state == S::kFaultHold;
 }
 void break_stance(CaseRun& run) {
   break_rung(run, run.box().plant().leg(run.stance_leg()).rung_index);
+}
+std::size_t index_of_stance(const CaseRun& run) {
+  return static_cast<std::size_t>(run.stance_leg());
 }
 std::int64_t stance_touch_opened_at(const CaseRun& run) {
   const bool counted = run.limb(run.stance_leg()) == LimbState::kLoaded ||
                        run.limb(run.stance_leg()) == LimbState::kSupportLost;
   return counted ? touch_opened_at(run, run.stance_leg()) : -1;
+}
+/// Drives that are being enabled hold where they are measured: no jaw presses, so no switch tells
+/// anything. The first target after that lets the jaw press, or close on nothing.
+std::int64_t stance_pressed_at(const CaseRun& run) {
+  const std::size_t leg = index_of_stance(run);
+  const bool was_counted = run.truth_before().legs[leg].holds &&
+                           run.limb(run.stance_leg()) == LimbState::kLoaded;
+  const bool is_gone = was_counted && !run.truth().legs[leg].holds;
+  return is_gone && run.report().output.send ? run.now_us() : -1;
 }
 bool stops_for_stance(const CaseRun& run) {
   return holds_for(run, flag(Fault::kStanceLost) | flag(Fault::kTooFewGrasps) |
@@ -346,9 +367,13 @@ constexpr std::array kRows = {
     DrillRow{6, "c", "target rung breaks", "before the claw closes", "not confirmed", comes_close,
              1, break_target, jaw_empty_at, lets_go, harm_by_unloading, nullptr, 2'000'000 + kT_us,
              6'000'000},
-    DrillRow{7, "", "stance rung breaks", "the rung of a limb that holds",
+    DrillRow{7, "a", "stance rung breaks", "the rung of a limb that holds",
              "FAULT_HOLD, SUPPORT_LOST", has_stance, 3, break_stance, stance_touch_opened_at,
              stops_for_stance, harm_by_unloading, nullptr, 2 * kT_us + 20'000, 1'000'000},
+    DrillRow{7, "b", "stance rung breaks", "while drives are being enabled",
+             "FAULT_HOLD when jaws press again", is_enabling, 3, break_stance, stance_pressed_at,
+             stops_for_stance, harm_by_unloading, nullptr, kJawTravel_us + 3 * kT_us + 20'000,
+             1'000'000},
     DrillRow{8, "a", "touch never arrives", "switch stuck open", "REGRASP", approaches, 1,
              open_touch, closing_since, tries_again, harm_by_trusting, nullptr, 2'000'000 + kT_us,
              6'000'000},

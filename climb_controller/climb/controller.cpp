@@ -94,7 +94,9 @@ FaultFlags Controller::faults_of(const ControllerInput& input) {
   if (lacks_grasps()) faults |= flag(Fault::kTooFewGrasps);
   if (is_stuck_) faults |= flag(Fault::kTracking);
   const bool dropped_out = following_ && !input.drives_enabled && state_ != S::kDisarming;
-  if (dropped_out) faults |= flag(Fault::kServoState);
+  // What made the bus stop its drives is the reason, where it is told.
+  const bool is_told = failsafe(input.faults, state_).reaction >= Reaction::kFaultHold;
+  if (dropped_out && !is_told) faults |= flag(Fault::kServoState);
   if (unsafe_) faults |= flag(Fault::kUnsafeCommand);
   return faults;
 }

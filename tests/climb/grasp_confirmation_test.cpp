@@ -106,6 +106,23 @@ TEST_F(Confirmation, NoticesALoss) {
   EXPECT_TRUE(claw_.is_lost());
 }
 
+// A claw that begins to press anew is given time for its switch, none for a jaw that closes past
+// where its rung was.
+TEST_F(Confirmation, WaitsForTheSwitchAndNotForTheJaw) {
+  const ClawReading slack{false, kClaw.on_rung_rad, -0.1};
+  show(kHeld, 10);
+  claw_.press_again(0.3);
+  show(slack, 20);
+  EXPECT_FALSE(claw_.is_lost());
+  show({false, kClaw.closed_rad, -0.1}, 2);
+  EXPECT_TRUE(claw_.is_lost());
+  claw_.press_again(0.3);
+  show(slack, 31);
+  EXPECT_FALSE(claw_.is_lost());
+  show(slack, 1);
+  EXPECT_TRUE(claw_.is_lost());
+}
+
 // Time that is none does not count; parameters are checked.
 TEST_F(Confirmation, IgnoresBadTime) {
   for (const double dt : {0.0, -1.0, kNan, kInfinity}) claw_.update(kHeld, dt);

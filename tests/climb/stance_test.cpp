@@ -79,7 +79,8 @@ TEST_F(StanceTest, DoesNotGoBackToTheBrokenRung) {
   EXPECT_FALSE(output_.fall_alarm);
 }
 
-// While it is put down no order is taken, a further fault ends it at once, and so does the E-stop.
+// While it is put down no order is taken; a further fault ends it at once and for good, and so does
+// the E-stop.
 TEST_F(StanceTest, PuttingDownEndsOnAnyFurtherFault) {
   for (const Fault fault : {Fault::kServoFault, Fault::kBusDown, Fault::kTilt, Fault::kEstop}) {
     climb_to(LimbState::kTransit);
@@ -100,6 +101,10 @@ TEST_F(StanceTest, PuttingDownEndsOnAnyFurtherFault) {
     run(0.5);
     EXPECT_EQ(output_.limbs, stood) << name(fault);
     EXPECT_LE((stand_.measured_rad(kRearRight) - angles_rad).norm(), 1e-3) << name(fault);
+    stand_.input.faults = 0;  // it passes: nothing goes on by itself
+    run(0.5);
+    EXPECT_FALSE(output_.putting_down) << name(fault);
+    EXPECT_EQ(output_.limbs, stood) << name(fault);
   }
 }
 
