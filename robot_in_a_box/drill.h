@@ -19,7 +19,7 @@ struct DrillOptions {
   std::set<TourKind> tours;  ///< empty = all
   int num_jobs = 0;          ///< 0 = one per processor
   std::uint64_t seed = 1;
-  int every = 1;  ///< only each n-th situation, for a quick look
+  int every = 1;                    ///< only each n-th situation, for a quick look
   std::size_t num_misses_told = 5;  ///< of each row
 };
 

@@ -200,8 +200,8 @@ std::int64_t stance_touch_opened_at(const CaseRun& run) {
 /// anything. The first target after that lets the jaw press, or close on nothing.
 std::int64_t stance_pressed_at(const CaseRun& run) {
   const std::size_t leg = index_of_stance(run);
-  const bool was_counted = run.truth_before().legs[leg].holds &&
-                           run.limb(run.stance_leg()) == LimbState::kLoaded;
+  const bool was_counted =
+      run.truth_before().legs[leg].holds && run.limb(run.stance_leg()) == LimbState::kLoaded;
   const bool is_gone = was_counted && !run.truth().legs[leg].holds;
   return is_gone && run.report().output.send ? run.now_us() : -1;
 }
