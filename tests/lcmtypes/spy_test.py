@@ -43,7 +43,7 @@ def test_start():
     spy = subprocess.Popen(
         command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True
     )
-    wanted = {f"Found {NUM_TYPES} LCM types", "Found 1 plugins"}
+    wanted = {f"Found {NUM_TYPES} LCM types", "Found 4 plugins"}
     said = []
     deadline = time.monotonic() + START_LIMIT_S
     while not wanted <= set(said) and time.monotonic() < deadline:

@@ -3,15 +3,10 @@ package ladder_spy;
 
 import java.awt.Color;
 import java.awt.Dimension;
-import java.awt.Graphics;
-import java.awt.event.ActionEvent;
+import java.awt.Graphics2D;
 import java.awt.image.BufferedImage;
-import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
-import javax.swing.JInternalFrame;
-import javax.swing.JPanel;
-import javax.swing.Timer;
 
 import ladder_msgs.tof_frame_t;
 import lcm.spy.ChannelData;
@@ -26,45 +21,18 @@ public final class DepthImage implements SpyPlugin {
 
     @Override
     public Action getAction(JDesktopPane desktop, ChannelData channel) {
-        return new AbstractAction("Depth image") {
-            @Override
-            public void actionPerformed(ActionEvent event) {
-                final JInternalFrame window = new JInternalFrame("Depth " + channel.name, true, true);
-                window.add(new View(channel));
-                window.pack();
-                window.setVisible(true);
-                desktop.add(window);
-            }
-        };
+        return LiveView.opener("Depth image", desktop, channel, View::new);
     }
 
-    /** The newest frame that the spy decoded on one channel. */
-    private static final class View extends JPanel {
-        private static final int PERIOD_MS = 66;
+    private static final class View extends LiveView {
         private static final int NO_RETURN = new Color(0, 0, 60).getRGB();
-        private final ChannelData channel;
-        private final Timer timer = new Timer(PERIOD_MS, event -> repaint());
 
         View(ChannelData channel) {
-            this.channel = channel;
-            setPreferredSize(new Dimension(448, 342));
+            super(channel, 66, new Dimension(448, 342));
         }
 
         @Override
-        public void addNotify() {
-            super.addNotify();
-            timer.start();
-        }
-
-        @Override
-        public void removeNotify() {
-            timer.stop();
-            super.removeNotify();
-        }
-
-        @Override
-        protected void paintComponent(Graphics graphics) {
-            super.paintComponent(graphics);
+        protected void draw(Graphics2D graphics) {
             if (channel.last instanceof tof_frame_t) {
                 graphics.drawImage(imageOf((tof_frame_t) channel.last), 0, 0, getWidth(), getHeight(), null);
             }
