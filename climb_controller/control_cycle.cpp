@@ -41,6 +41,11 @@ const char* name(Policy policy) {
   return "?";
 }
 
+bool finishes_first(climb::ControllerState state) {
+  return state == climb::ControllerState::kClimbing ||
+         state == climb::ControllerState::kProtectiveHold;
+}
+
 std::string check(const CycleParams& params) {
   const std::string violated = climb::check(completed(params));
   if (!violated.empty()) return violated;

@@ -96,6 +96,12 @@ struct CycleReport {
   bool is_resetting = false;  ///< a reset waits for the bus
 };
 
+/// Asked to end in this state, it first finishes the step in the air.
+bool finishes_first(climb::ControllerState state);
+
+/// From hand_over() until all drives stand and hold by themselves.
+inline constexpr int kHandOverCycles = 20;
+
 class ControlCycle {
  public:
   /// `params` pass check(); the bus has sixteen axes and outlives this.

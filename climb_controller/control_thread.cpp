@@ -27,7 +27,6 @@ constexpr int kMessagePriority = 20;
 constexpr std::int64_t kImuSilent_us = 100'000;
 constexpr int kSettleSteps = 10;
 constexpr int kSettleStep_us = 5'000;
-constexpr int kHandOverCycles = 20;   // until all drives stand and hold by themselves
 constexpr int kMaxWakesPerCycle = 8;  // by edges of the lines: a chattering wire does not starve us
 
 std::int64_t time_us(clockid_t clock) {

@@ -210,10 +210,7 @@ std::optional<int> ClimbService::end_now(bool asked) noexcept {
   }
   if (!asked) return std::nullopt;
   control_.terminate();
-  const climb::ControllerState state = report.output.state;
-  const bool is_on_its_way = state == climb::ControllerState::kClimbing ||
-                             state == climb::ControllerState::kProtectiveHold;
-  if (is_on_its_way) {
+  if (finishes_first(report.output.state)) {
     if (!is_ending_) context_.journal.info("asked to end: the step in the air is finished first");
     is_ending_ = true;
     return std::nullopt;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_in_a_box/climb_box.h"
 
+#include <array>
 #include <bit>
+
+#include "climb_controller/convert.h"
+#include "ladder_msgs/command_t.hpp"
 
 namespace robot_in_a_box {
 namespace {
@@ -98,11 +102,12 @@ void ClimbBox::step() {
   inbox_.imu.valid = now_us_ - imu_heard_us_ <= kImuLost_us;
   inbox_.ladder = perception_.view();
   inbox_.ladder_received_us = perception_.received_us();
-  inbox_.command = command_;
-  command_ = {};
+  inbox_.command = {};
+  orders_.pop(inbox_.command);
   inbox_.faults = flags_ | clock_.begin(now_us_, now_us_ + slept_us_);
   cycle_.step(now_us_, inbox_, report_);
   tell_monitor();
+  if (terminating_) end_when_possible();
   if (watcher_ != nullptr) watcher_->on_report(report_);
 }
 
@@ -127,6 +132,30 @@ void ClimbBox::tell_monitor() {
     monitor_.on_stop(now_us_, told ? static_cast<int>(report_.output.reason) + 1 : 0);
   }
   told_state_ = now;
+}
+
+void ClimbBox::order(const climb::OperatorCommand& command) {
+  ladder_msgs::command_t told;
+  told.utime = now_us_;
+  told.seq = command.seq;
+  told.session_id = static_cast<std::int64_t>(command.session_id);
+  told.order = static_cast<std::int8_t>(command.order);
+  std::array<std::uint8_t, 64> bytes;
+  const int size = told.encode(bytes.data(), 0, bytes.size());
+  ladder_msgs::command_t heard;
+  const bool is_whole = heard.decode(bytes.data(), 0, size) == size;
+  if (is_whole) orders_.push(climb_controller::to_command(heard));
+}
+
+void ClimbBox::terminate() {
+  terminating_ = true;
+  flag_fault(climb::Fault::kTerminate);
+}
+
+void ClimbBox::end_when_possible() {
+  if (num_ending_cycles_ == 0 && climb_controller::finishes_first(state())) return;
+  if (num_ending_cycles_ == 0) cycle_.hand_over();
+  if (++num_ending_cycles_ == climb_controller::kHandOverCycles) kill();
 }
 
 void ClimbBox::hash(const simulator::CarriedFrame& carried) {

@@ -10,6 +10,7 @@
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/cycle_clock.h"
 #include "climb_controller/drive_layout.h"
+#include "climb_controller/slots.h"
 #include "gpio/lines.h"
 #include "robot_in_a_box/memory_chip.h"
 #include "robot_in_a_box/memory_transport.h"
@@ -55,7 +56,8 @@ class ClimbBox {
 
   /// In the next cycle, with this run's session and the next number.
   void order(climb::Order what) { order({what, session_id(), ++last_seq_}); }
-  void order(const climb::OperatorCommand& command) { command_ = command; }
+  /// As the message that the operator's tool sends; refused where too many wait already.
+  void order(const climb::OperatorCommand& command);
   std::uint64_t session_id() const { return cycle_.session_id(); }
   std::int64_t last_seq() const { return last_seq_; }
 
@@ -84,6 +86,9 @@ class ClimbBox {
   void hang(std::int64_t duration_us) { pause_until(now_us_ + duration_us); }
   void flag_fault(climb::Fault fault) { flags_ |= climb::flag(fault); }  ///< found by the service
   void clear_flag(climb::Fault fault) { flags_ &= ~climb::flag(fault); }
+  /// SIGTERM: what the live service does then, until the process is gone.
+  void terminate();
+  bool has_ended() const { return num_ending_cycles_ >= climb_controller::kHandOverCycles; }
   void sleep(std::int64_t duration_us) { slept_us_ += duration_us; }  ///< of the machine
   bool imu_silent = false;
   bool imu_falls = false;
@@ -99,6 +104,7 @@ class ClimbBox {
   void observe();
   void step();
   void tell_monitor();
+  void end_when_possible();
   void hash(const simulator::CarriedFrame& carried);
 
   simulator::MemoryBus bus_;
@@ -119,7 +125,9 @@ class ClimbBox {
   std::int64_t imu_heard_us_ = -1'000'000'000;
   climb_controller::CycleInbox inbox_;
   climb_controller::CycleReport report_;
-  climb::OperatorCommand command_;
+  climb_controller::BoundedQueue<climb::OperatorCommand, 16> orders_;
+  bool terminating_ = false;
+  int num_ending_cycles_ = 0;
   std::int64_t last_seq_ = 0;
   climb::FaultFlags flags_ = 0;
   climb::ControllerState told_state_ = climb::ControllerState::kBoot;

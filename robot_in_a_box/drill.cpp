@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_in_a_box/drill.h"
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -77,9 +78,12 @@ struct Journey {
 std::span<const DrillRow> drill_rows() {
   static const std::vector<DrillRow> all = [] {
     std::vector<DrillRow> rows;
-    for (const auto part : {rows_of_grasps(), rows_of_drives(), rows_of_process()}) {
+    for (const auto part : {rows_of_messages(), rows_of_grasps(), rows_of_drives(),
+                            rows_of_process(), rows_of_senses()}) {
       rows.insert(rows.end(), part.begin(), part.end());
     }
+    std::stable_sort(rows.begin(), rows.end(),
+                     [](const DrillRow& a, const DrillRow& b) { return a.number < b.number; });
     return rows;
   }();
   return all;

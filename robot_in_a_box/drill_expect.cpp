@@ -102,4 +102,77 @@ void arm_meanwhile(CaseRun& run) {
   if (is_time && is_unpowered(run.before().state)) run.box().order(climb::Order::kArm);
 }
 
+bool everywhere(const Situation&) {
+  return true;
+}
+
+bool after_boot(const Situation& at) {
+  return at.state != S::kBoot;
+}
+
+bool where_enabled(const Situation& at) {
+  return is_powered(at.state) || at.state == S::kFaultHold ||
+         (at.state == S::kArming && at.leg >= 0);
+}
+
+bool in_climbing(const Situation& at) {
+  return at.state == S::kClimbing;
+}
+
+bool in_hold(const Situation& at) {
+  return at.state == S::kHold && !at.docked;
+}
+
+bool takes_no_notice(const CaseRun& run) {
+  return run.since_us() >= 300'000;
+}
+
+const char* harm_by_notice(const CaseRun& run) {
+  const bool notices = run.state() == S::kFaultHold || run.state() == S::kEstop;
+  return notices && !is_latched(run.before().state) ? "stopped for nothing" : harm_to_grasps(run);
+}
+
+bool rests(const CaseRun& run) {
+  const bool no_grasp =
+      run.reason() == climb::Fault::kGraspDisagrees || run.reason() == climb::Fault::kNoGrasp;
+  return run.state() == S::kHold || (run.state() == S::kFaultHold && no_grasp);
+}
+
+std::int64_t next_message_at(const CaseRun& run) {
+  return run.messages_since() > 0 ? run.injected_us() + run.messages_since() : -1;
+}
+
+const char* harm_by_reaching(const CaseRun& run) {
+  for (const climb::Leg leg : climb::kLegs) {
+    const climb::LimbState at = run.limb(leg);
+    if (at != climb::LimbState::kLoaded && at != climb::LimbState::kSupportLost)
+      return "a limb was lifted";
+  }
+  return harm_to_grasps(run);
+}
+
+bool follows_again(const CaseRun& run) {
+  return run.report().bus_phase == can::BusPhase::kEnabled && !is_latched(run.state());
+}
+
+void reset_and_arm(CaseRun& run, std::int64_t reset_us) {
+  if (run.since_us() == reset_us) run.box().order(climb::Order::kReset);
+  const bool is_time = run.since_us() > reset_us + 100'000 && run.since_us() % 100'000 == 0;
+  if (is_time && run.state() == S::kDisarmed) run.box().order(climb::Order::kArm);
+}
+
+const char* harm_by_next_step(const CaseRun& run) {
+  for (const climb::Leg leg : climb::kLegs) {
+    const climb::LimbState at = run.limb(leg);
+    const bool begins = leg != run.before().leg && at != climb::LimbState::kLoaded;
+    if (begins && run.since_us() > 2 * kT_us) return "another step was begun";
+  }
+  for (int axis = 0; axis < kNumAxes; ++axis) {
+    const auto index = static_cast<std::size_t>(axis);
+    const bool had = has_torque(run.truth_before().power[index]);
+    if (had && !has_torque(run.truth().power[index])) return "an axis lost its torque";
+  }
+  return harm_to_grasps(run);
+}
+
 }  // namespace robot_in_a_box

@@ -18,16 +18,6 @@ constexpr climb::FaultFlags kAnyServo =
     flag(Fault::kServoSilent) | flag(Fault::kServoState) | flag(Fault::kServoFault);
 constexpr climb::FaultFlags kNoFollowing = kAnyServo | flag(Fault::kTracking);
 
-bool everywhere(const Situation&) {
-  return true;
-}
-bool after_boot(const Situation& at) {
-  return at.state != S::kBoot;
-}
-bool where_enabled(const Situation& at) {
-  return is_powered(at.state) || at.state == S::kFaultHold ||
-         (at.state == S::kArming && at.leg >= 0);
-}
 std::uint32_t node(const CaseRun& run) {
   return static_cast<std::uint32_t>(run.some_axis()) + 1;
 }
@@ -141,14 +131,6 @@ void send_some_junk(CaseRun& run) {
 bool holds_for_junk(const CaseRun& run) {
   return holds_for(run, flag(Fault::kMalformedFrames));
 }
-bool takes_no_notice(const CaseRun& run) {
-  return run.since_us() >= 300'000;
-}
-const char* harm_by_notice(const CaseRun& run) {
-  const bool notices = run.state() == S::kFaultHold || run.state() == S::kEstop;
-  return notices && !is_latched(run.before().state) ? "stopped for nothing" : harm_to_grasps(run);
-}
-
 // --- rows 17 to 19: the bus ----------------------------------------------------------------------
 
 void go_bus_off(CaseRun& run) {
@@ -168,10 +150,6 @@ bool is_silent(const CaseRun& run) {
   const bool faulted = run.report().bus_phase == can::BusPhase::kFaulted;
   return faulted && holds_for(run, flag(Fault::kBusDown) | flag(Fault::kTransmitStalled));
 }
-bool speaks(const Situation& at) {
-  return at.state != S::kBoot;
-}
-
 void stall(CaseRun& run) {
   run.box().bus().set_condition(simulator::BusCondition::kStalled, run.now_us());
 }
@@ -194,19 +172,13 @@ void go_down(CaseRun& run) {
 }
 void come_back_and_rearm(CaseRun& run) {
   come_back(run);
-  if (run.since_us() == 600'000) run.box().order(climb::Order::kReset);
-  if (run.since_us() > 700'000 && run.state() == S::kDisarmed && run.since_us() % 100'000 == 0) {
-    run.box().order(climb::Order::kArm);
-  }
+  reset_and_arm(run, 600'000);
 }
 bool was_powered(const Situation& at) {
   return is_powered(at.state);
 }
 std::int64_t reset_at(const CaseRun& run) {
   return run.since_us() >= 600'000 ? run.injected_us() + 600'000 : -1;
-}
-bool follows_again(const CaseRun& run) {
-  return run.report().bus_phase == can::BusPhase::kEnabled && run.state() != S::kFaultHold;
 }
 
 constexpr std::array kRows = {
@@ -236,21 +208,21 @@ constexpr std::array kRows = {
     DrillRow{15, "c", "position jumps", "by 0.2 rad, the limb under way", "FAULT_HOLD",
              where_limbs_move, 1, jump, jump_told_at, holds_for_following, harm_but_for_joint,
              nullptr, 2 * kT_us, 1'000'000},
-    DrillRow{16, "a", "bad frames", "14 at once", "FAULT_HOLD", speaks, 1, send_much_junk, nullptr,
-             holds_for_junk, harm_after_stop, nullptr, kT_us, 500'000},
+    DrillRow{16, "a", "bad frames", "14 at once", "FAULT_HOLD", after_boot, 1, send_much_junk,
+             nullptr, holds_for_junk, harm_after_stop, nullptr, kT_us, 500'000},
     DrillRow{16, "b", "bad frames", "9 at once", "ignored", everywhere, 1, send_some_junk, nullptr,
              takes_no_notice, harm_by_notice, nullptr, 300'000, 400'000},
-    DrillRow{17, "a", "bus off", "error frame", "silent, FAULT_HOLD", speaks, 1, go_bus_off,
+    DrillRow{17, "a", "bus off", "error frame", "silent, FAULT_HOLD", after_boot, 1, go_bus_off,
              nullptr, is_silent, harm_when_silent, nullptr, kT_us, 600'000},
-    DrillRow{17, "b", "error passive", "error frame", "silent, FAULT_HOLD", speaks, 1,
+    DrillRow{17, "b", "error passive", "error frame", "silent, FAULT_HOLD", after_boot, 1,
              go_error_passive, nullptr, is_silent, harm_when_silent, nullptr, kT_us, 600'000},
     DrillRow{18, "a", "transmit queue stalls", "nothing leaves, then all could",
-             "silent, FAULT_HOLD, nothing stale", speaks, 1, stall, first_stalled_cycle_at,
+             "silent, FAULT_HOLD, nothing stale", after_boot, 1, stall, first_stalled_cycle_at,
              is_silent, harm_when_silent, come_back, 2 * kT_us, 700'000},
     DrillRow{18, "b", "no buffers", "no frame is taken, then all could",
-             "silent, FAULT_HOLD, nothing stale", speaks, 1, refuse_frames, first_stalled_cycle_at,
-             is_silent, harm_when_silent, come_back, 2 * kT_us, 700'000},
-    DrillRow{19, "a", "interface down", "for 0.3 s", "silent, FAULT_HOLD", speaks, 1, go_down,
+             "silent, FAULT_HOLD, nothing stale", after_boot, 1, refuse_frames,
+             first_stalled_cycle_at, is_silent, harm_when_silent, come_back, 2 * kT_us, 700'000},
+    DrillRow{19, "a", "interface down", "for 0.3 s", "silent, FAULT_HOLD", after_boot, 1, go_down,
              nullptr, is_silent, harm_when_silent, come_back, kT_us, 1'500'000},
     DrillRow{19, "b", "interface back", "down for 0.3 s, reset and armed",
              "enabled where it stands", was_powered, 1, go_down, reset_at, follows_again,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fault table as data, rows 1..10: perception, targets, rungs and touch. What is injected,
-// where it applies, what must happen and by when.
+// The fault table as data, rows 4 to 10: targets, rungs and touch. What is injected, where it
+// applies, what must happen and by when.
 #include <array>
 
 #include "robot_in_a_box/drill_expect.h"
@@ -21,63 +21,8 @@ using S = climb::ControllerState;
 /// is the measured one.
 constexpr std::int64_t kJawTravel_us = 50'000;
 
-bool in_climbing(const Situation& at) {
-  return at.state == S::kClimbing;
-}
-bool in_hold(const Situation& at) {
-  return at.state == S::kHold && !at.docked;
-}
 bool works(const Situation& at) {
   return at.state == S::kClimbing || at.state == S::kArming;
-}
-
-// --- rows 1 to 3: perception ---------------------------------------------------------------------
-
-void silence(CaseRun& run) {
-  run.memo = run.box().perception().received_us();
-  run.box().perception().silent = true;
-}
-std::int64_t last_message_at(const CaseRun& run) {
-  return run.memo;
-}
-bool is_protected(const CaseRun& run) {
-  return run.state() == S::kProtectiveHold;
-}
-const char* harm_but_loading(const CaseRun& run) {
-  const LimbState at = run.before().limb;
-  const bool finishes = at == LimbState::kLoading || at == LimbState::kVerify ||
-                        at == LimbState::kClosing || run.before().shifts;
-  return finishes ? harm_to_grasps(run) : harm_after_stop(run);
-}
-
-bool waits_for_perception(const Situation& at) {
-  return at.state == S::kProtectiveHold;
-}
-void speak_again(CaseRun& run) {
-  run.box().perception().silent = false;
-}
-std::int64_t next_message_at(const CaseRun& run) {
-  return run.messages_since() > 0 ? run.injected_us() + run.messages_since() : -1;
-}
-bool climbs_on(const CaseRun& run) {
-  return run.state() == S::kClimbing;
-}
-
-void climb_unseeing(CaseRun& run) {
-  if (run.since_us() == 400'000) run.box().order(Order::kClimb);
-}
-const char* harm_by_reaching(const CaseRun& run) {
-  for (const climb::Leg leg : climb::kLegs) {
-    const LimbState at = run.limb(leg);
-    if (at != LimbState::kLoaded && at != LimbState::kSupportLost) return "a limb was lifted";
-  }
-  return harm_to_grasps(run);
-}
-bool did_not_start(const CaseRun& run) {
-  return run.since_us() >= 420'000 && (is_protected(run) || run.state() == S::kHold);
-}
-std::int64_t climb_ordered_at(const CaseRun& run) {
-  return run.since_us() >= 410'000 ? run.injected_us() + 400'000 : -1;
 }
 
 // --- row 4: nothing in reach ---------------------------------------------------------------------
@@ -265,84 +210,7 @@ void break_and_close_touch(CaseRun& run) {
   close_touch(run);
 }
 
-// --- rows 2 and 3: messages that are not believed ------------------------------------------------
-
-template <Nonsense kKind>
-void speak_nonsense(CaseRun& run) {
-  run.memo = run.box().perception().received_us();
-  run.box().perception().nonsense = kKind;
-}
-bool anywhere(const Situation&) {
-  return true;
-}
-bool ignores_it(const CaseRun& run) {
-  return run.box().perception().received_us() == run.memo;
-}
-const char* harm_by_believing(const CaseRun& run) {
-  if (run.box().perception().received_us() != run.memo) return "a bad message was taken";
-  return harm_to_grasps(run);
-}
-/// Before the rungs have grown too old nothing may change for a bad message.
-const char* harm_by_change(const CaseRun& run) {
-  const bool stops = run.state() == S::kFaultHold || run.state() == S::kEstop;
-  if (stops && !is_latched(run.before().state)) return "stopped for a message";
-  return harm_by_believing(run);
-}
-
-template <Nonsense kKind>
-constexpr DrillRow nonsense_row(int number, const char* part, const char* injected) {
-  return {number,
-          part,
-          number == 2 ? "message out of order or time" : "message that makes no sense",
-          injected,
-          "dropped, nothing changes",
-          anywhere,
-          1,
-          speak_nonsense<kKind>,
-          nullptr,
-          ignores_it,
-          harm_by_change,
-          nullptr,
-          kT_us,
-          200'000};
-}
-template <Nonsense kKind>
-constexpr DrillRow long_nonsense_row(int number, const char* part, const char* injected) {
-  return {number,
-          part,
-          number == 2 ? "only messages out of order" : "only senseless messages",
-          injected,
-          "as row 1: PROTECTIVE_HOLD",
-          in_climbing,
-          1,
-          speak_nonsense<kKind>,
-          last_message_at,
-          is_protected,
-          harm_by_believing,
-          nullptr,
-          300'000 + kT_us,
-          800'000};
-}
-
 constexpr std::array kRows = {
-    nonsense_row<Nonsense::kRepeated>(2, "a", "repeated"),
-    nonsense_row<Nonsense::kReordered>(2, "b", "reordered"),
-    nonsense_row<Nonsense::kOld>(2, "c", "a second old"),
-    nonsense_row<Nonsense::kAhead>(2, "d", "an hour ahead"),
-    long_nonsense_row<Nonsense::kRepeated>(2, "e", "ten and more in a row"),
-    nonsense_row<Nonsense::kNotFinite>(3, "a", "NaN"),
-    nonsense_row<Nonsense::kHuge>(3, "b", "1e30 m"),
-    nonsense_row<Nonsense::kBadCount>(3, "c", "bad array length"),
-    long_nonsense_row<Nonsense::kNotFinite>(3, "d", "ten and more in a row"),
-    DrillRow{1, "a", "perception silent", "no more messages", "PROTECTIVE_HOLD", in_climbing, 1,
-             silence, last_message_at, is_protected, harm_but_loading, nullptr, 300'000 + kT_us,
-             800'000},
-    DrillRow{1, "b", "perception silent", "messages again", "CLIMBING goes on",
-             waits_for_perception, 1, speak_again, next_message_at, climbs_on, harm_to_grasps,
-             nullptr, 2 * kT_us, 300'000},
-    DrillRow{1, "c", "perception silent", "no messages, then the order to climb", "no reach",
-             in_hold, 1, silence, climb_ordered_at, did_not_start, harm_by_reaching, climb_unseeing,
-             2 * kT_us, 1'500'000},
     DrillRow{4, "a", "nothing in reach", "only far rungs are seen", "HOLD, reason told",
              decides_next, 1, see_only_far, decision_due_at, is_refused, harm_to_grasps, nullptr,
              2 * kT_us, 6'000'000},

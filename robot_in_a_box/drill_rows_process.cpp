@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fault table as data, rows 20..32: the controller's process, the E-stop, clocks, rivals, IMU,
-// orders, warnings.
+// The fault table as data, rows 20 to 26 and 32: the controller's process, the E-stop, clocks,
+// rivals, the disk.
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -17,29 +17,16 @@ namespace {
 
 using climb::Fault;
 using climb::flag;
-using climb::Order;
 using simulator::BusFrame;
 using simulator::kNumAxes;
 using simulator::PowerState;
 using S = climb::ControllerState;
 
 constexpr std::int64_t kHang_us = 1'000'000;
+constexpr std::int64_t kHour_us = 3'600'000'000;
 
-bool everywhere(const Situation&) {
-  return true;
-}
-bool after_boot(const Situation& at) {
-  return at.state != S::kBoot;
-}
-bool where_enabled(const Situation& at) {
-  return is_powered(at.state) || at.state == S::kFaultHold ||
-         (at.state == S::kArming && at.leg >= 0);
-}
 bool in_estop(const Situation& at) {
   return at.state == S::kEstop;
-}
-bool in_climbing(const Situation& at) {
-  return at.state == S::kClimbing;
 }
 
 // --- rows 20 to 22: the process ------------------------------------------------------------------
@@ -99,43 +86,21 @@ bool holds_for_overrun(const CaseRun& run) {
   return holds_for(run, flag(Fault::kOverrun) | flag(Fault::kServoState) |
                             flag(Fault::kServoFault) | flag(Fault::kServoSilent));
 }
-bool takes_no_notice(const CaseRun& run) {
-  return run.since_us() >= 300'000;
-}
-const char* harm_by_notice(const CaseRun& run) {
-  const bool notices = run.state() == S::kFaultHold || run.state() == S::kEstop;
-  return notices && !is_latched(run.before().state) ? "stopped for nothing" : harm_to_grasps(run);
-}
-
 void terminate(CaseRun& run) {
-  run.box().flag_fault(Fault::kTerminate);
+  run.box().terminate();
 }
-/// At rest, or stopped because the limb under way cannot finish for a trouble of its own.
-bool rests(const CaseRun& run) {
-  const bool no_grasp = run.reason() == Fault::kGraspDisagrees || run.reason() == Fault::kNoGrasp;
-  return run.state() == S::kHold || (run.state() == S::kFaultHold && no_grasp);
+/// The limb in the air has finished, then the drives were handed over and the process is gone.
+bool ends_at_rest(const CaseRun& run) {
+  return run.box().has_ended() && rests(run);
 }
-/// The limb in the air finishes, none is lifted any more.
-const char* harm_by_next_step(const CaseRun& run) {
-  for (const climb::Leg leg : climb::kLegs) {
-    const climb::LimbState at = run.limb(leg);
-    const bool begins = leg != run.before().leg && at != climb::LimbState::kLoaded;
-    if (begins && run.since_us() > 2 * kT_us) return "another step was begun";
-  }
-  for (int axis = 0; axis < kNumAxes; ++axis) {
-    const auto index = static_cast<std::size_t>(axis);
-    const bool had = has_torque(run.truth_before().power[index]);
-    if (had && !has_torque(run.truth().power[index])) return "an axis lost its torque";
-  }
-  return harm_to_grasps(run);
+bool ends(const CaseRun& run) {
+  return run.box().has_ended();
 }
-bool in_rest(const Situation& at) {
-  return at.state == S::kHold || is_unpowered(at.state);
+bool ends_at_once(const Situation& at) {
+  return !climb_controller::finishes_first(at.state);
 }
-bool stays_at_rest(const CaseRun& run) {
-  return run.since_us() >= 500'000 && is_unchanged(run);
-}
-
+/// From the order to drives that stand and hold by themselves.
+constexpr std::int64_t kHandingOver_us = climb_controller::kHandOverCycles * kT_us;
 // --- rows 23 and 24: E-stop ----------------------------------------------------------------------
 
 void press(CaseRun& run) {
@@ -184,23 +149,27 @@ const char* harm_by_starting(const CaseRun& run) {
   }
   return harm_to_grasps(run);
 }
-void reset_and_arm(CaseRun& run) {
-  if (run.since_us() == 400'000) run.box().order(Order::kReset);
-  if (run.since_us() > 500'000 && run.state() == S::kDisarmed && run.since_us() % 100'000 == 0) {
-    run.box().order(Order::kArm);
-  }
+void reset_and_arm_soon(CaseRun& run) {
+  reset_and_arm(run, 400'000);
 }
 std::int64_t reset_at(const CaseRun& run) {
   return run.since_us() >= 400'000 ? run.injected_us() + 400'000 : -1;
-}
-bool follows_again(const CaseRun& run) {
-  return run.report().bus_phase == can::BusPhase::kEnabled && run.state() != S::kEstop;
 }
 
 // --- rows 25 and 26: clocks and rivals -----------------------------------------------------------
 
 void sleep_machine(CaseRun& run) {
   run.box().sleep(1'000'000);
+}
+void step_ahead(CaseRun& run) {
+  run.box().perception().wall_step_us += kHour_us;
+}
+void step_back(CaseRun& run) {
+  run.box().perception().wall_step_us -= kHour_us;
+}
+/// Silent before: then there is nothing to take.
+bool takes_messages_again(const CaseRun& run) {
+  return run.messages_since() > 100'000 || run.box().perception().silent;
 }
 bool holds_for_sleep(const CaseRun& run) {
   return holds_for(run, flag(Fault::kSuspended));
@@ -251,89 +220,6 @@ const char* harm_by_speaking(const CaseRun& run) {
   return run.last_master_frame_us() >= 0 ? "spoke on a bus that has a master" : nullptr;
 }
 
-// --- row 27: IMU ---------------------------------------------------------------------------------
-
-bool is_armed(const Situation& at) {
-  return is_powered(at.state) || (at.state == S::kArming && at.follows);
-}
-void tilt(CaseRun& run) {
-  run.box().imu_turn = Eigen::AngleAxisd(0.35, Eigen::Vector3d::UnitY());
-}
-void fall(CaseRun& run) {
-  run.box().imu_falls = true;
-}
-void silence_imu(CaseRun& run) {
-  run.box().imu_silent = true;
-}
-bool holds_for_tilt(const CaseRun& run) {
-  return holds_for(run, flag(Fault::kTilt));
-}
-bool holds_for_fall(const CaseRun& run) {
-  return holds_for(run, flag(Fault::kFreeFall));
-}
-bool all_claws_close(const CaseRun& run) {
-  if (!holds_for_fall(run)) return false;
-  for (int leg = 0; leg < simulator::kNumLegs; ++leg) {
-    if (run.axis(simulator::axis_of(leg, 3)).target > -0.55 * 10'430.0) return false;
-  }
-  return true;
-}
-bool holds_for_imu(const CaseRun& run) {
-  return holds_for(run, flag(Fault::kImuSilent));
-}
-
-// --- rows 28, 30, 31: orders and warnings --------------------------------------------------------
-
-Order any_order(CaseRun& run) {
-  constexpr std::array<Order, 7> kOrders = {Order::kArm,   Order::kClimb, Order::kClimbDown,
-                                            Order::kPause, Order::kHold,  Order::kReset,
-                                            Order::kDisarm};
-  return kOrders[run.rng().below(7)];
-}
-void order_of_another_run(CaseRun& run) {
-  const std::uint64_t other = run.box().session_id() ^ (1ULL << run.rng().below(64));
-  run.memo = run.box().last_seq() + 1000;
-  run.box().order({any_order(run), other, run.memo});
-}
-void order_from_a_log(CaseRun& run) {
-  run.memo = static_cast<std::int64_t>(
-      run.rng().below(static_cast<std::uint32_t>(run.box().last_seq() + 1)));
-  run.box().order({any_order(run), run.box().session_id(), run.memo});
-}
-bool rejects_session(const CaseRun& run) {
-  const bool is_next = run.report().now_us > run.injected_us();
-  return is_next && run.report().verdict == climb::CommandVerdict::kWrongSession;
-}
-bool rejects_sequence(const CaseRun& run) {
-  return run.report().order_seq == run.memo &&
-         run.report().verdict == climb::CommandVerdict::kReplayed;
-}
-bool knows_orders(const Situation& at) {
-  return at.state != S::kBoot && at.state != S::kSelftest &&
-         !(at.state == S::kDisarmed && at.docked);
-}
-const char* harm_by_obeying(const CaseRun& run) {
-  const bool by_itself = run.before().state == S::kClimbing || run.before().state == S::kArming ||
-                         run.before().state == S::kDisarming ||
-                         run.before().state == S::kProtectiveHold ||
-                         is_unpowered(run.before().state);
-  if (!by_itself && run.state() != run.before().state) return "obeyed";
-  const bool starts = is_unpowered(run.before().state) && !is_unpowered(run.state());
-  return starts ? "obeyed" : harm_to_grasps(run);
-}
-
-void warn_of_voltage(CaseRun& run) {
-  run.box().plant().warn(run.some_axis(), 0x3120);
-}
-void warn_of_heat(CaseRun& run) {
-  run.box().plant().warn(run.some_axis(), 0x4310);
-}
-
-void flood(CaseRun& run) {
-  const std::uint64_t other = run.rng().next() & ~1ULL;
-  run.box().order({any_order(run), other, static_cast<std::int64_t>(run.rng().next() >> 1)});
-}
-
 // --- row 32: the disk ----------------------------------------------------------------------------
 
 /// Of this copy of the process: whatever it writes fails.
@@ -364,11 +250,12 @@ constexpr std::array kRows = {
              600'000},
     DrillRow{21, "d", "loop overrun", "once, 15 ms", "counted only", everywhere, 1, hang_a_little,
              nullptr, takes_no_notice, harm_by_notice, nullptr, 300'000, 400'000},
-    DrillRow{22, "a", "SIGTERM", "the service is asked to end", "finishes the step, HOLD",
-             in_climbing, 1, terminate, nullptr, rests, harm_by_next_step, nullptr, 20'000'000,
-             20'500'000},
-    DrillRow{22, "b", "SIGTERM", "the service is asked to end", "torque stays", in_rest, 1,
-             terminate, nullptr, stays_at_rest, harm_after_stop, arm_meanwhile, 500'000, 900'000},
+    DrillRow{22, "a", "SIGTERM", "while it climbs", "finishes the step, HOLD, hands over",
+             in_climbing, 1, terminate, nullptr, ends_at_rest, harm_by_next_step, nullptr,
+             20'000'000 + kHandingOver_us, 20'800'000},
+    DrillRow{22, "b", "SIGTERM", "elsewhere", "hands over, torque stays", ends_at_once, 1,
+             terminate, nullptr, ends, harm_after_stop, arm_meanwhile, kHandingOver_us + 2 * kT_us,
+             900'000},
     DrillRow{23, "a", "E-stop", "pressed", "quick stop, ESTOP", everywhere, 1, press, nullptr,
              stops_at_once, harm_in_estop, nullptr, 20'000, 500'000},
     DrillRow{23, "b", "E-stop", "wire broken", "quick stop, ESTOP", everywhere, 1, break_wire,
@@ -378,9 +265,14 @@ constexpr std::array kRows = {
     DrillRow{24, "a", "E-stop released", "nothing else", "nothing moves", in_estop, 1, release,
              nullptr, stays_in_estop, harm_by_starting, nullptr, 800'000, 1'000'000},
     DrillRow{24, "b", "E-stop released", "reset and armed", "enabled where it stands", in_estop, 1,
-             release, reset_at, follows_again, harm_to_grasps, reset_and_arm, 6'000'000, 7'000'000},
-    DrillRow{25, "", "machine slept", "BOOTTIME runs ahead", "FAULT_HOLD", everywhere, 1,
+             release, reset_at, follows_again, harm_to_grasps, reset_and_arm_soon, 6'000'000,
+             7'000'000},
+    DrillRow{25, "a", "machine slept", "BOOTTIME runs ahead", "FAULT_HOLD", everywhere, 1,
              sleep_machine, nullptr, holds_for_sleep, harm_after_stop, nullptr, kT_us, 500'000},
+    DrillRow{25, "b", "wall clock steps", "an hour ahead", "goes on; row 1 at most", everywhere, 1,
+             step_ahead, nullptr, takes_messages_again, harm_by_notice, nullptr, 300'000, 400'000},
+    DrillRow{25, "c", "wall clock steps", "an hour back", "goes on; row 1 at most", everywhere, 1,
+             step_back, nullptr, takes_messages_again, harm_by_notice, nullptr, 300'000, 400'000},
     DrillRow{26, "a", "second controller", "its SYNC", "silent, FAULT_HOLD", after_boot, 1,
              rival_sync, nullptr, gives_way, harm_when_rivals, nullptr, kT_us, 600'000},
     DrillRow{26, "b", "second controller", "its SDO", "silent, FAULT_HOLD", after_boot, 1,
@@ -392,29 +284,6 @@ constexpr std::array kRows = {
     DrillRow{26, "e", "second controller", "is there at the start", "says nothing", in_boot, 1,
              rival_sync, nullptr, has_not_spoken, harm_by_speaking, keep_sync_up, 1'000'000,
              1'500'000},
-    DrillRow{27, "a", "tilt", "20 deg", "FAULT_HOLD", is_armed, 1, tilt, nullptr, holds_for_tilt,
-             harm_after_stop, nullptr, 50'000 + kT_us, 500'000},
-    DrillRow{27, "b", "free fall", "0 g", "FAULT_HOLD", everywhere, 1, fall, nullptr,
-             holds_for_fall, harm_after_stop, arm_meanwhile, 50'000 + kT_us, 700'000},
-    DrillRow{27, "c", "free fall", "0 g", "all claws close", is_armed, 1, fall, nullptr,
-             all_claws_close, harm_after_stop, nullptr, 50'000 + kT_us + 400'000, 1'000'000},
-    DrillRow{27, "d", "IMU silent", "no more readings", "FAULT_HOLD", after_boot, 1, silence_imu,
-             nullptr, holds_for_imu, harm_after_stop, arm_meanwhile, 100'000 + kT_us, 600'000},
-    DrillRow{28, "a", "order replayed", "of another session", "rejected", everywhere, 1,
-             order_of_another_run, nullptr, rejects_session, harm_by_obeying, nullptr, kT_us,
-             100'000},
-    DrillRow{28, "b", "order replayed", "an old number", "rejected", knows_orders, 1,
-             order_from_a_log, nullptr, rejects_sequence, harm_by_obeying, nullptr, kT_us, 100'000},
-    DrillRow{30, "a", "under-voltage warning", "EMCY 3120h", "finishes the step, HOLD", in_climbing,
-             1, warn_of_voltage, nullptr, rests, harm_by_next_step, nullptr, 20'000'000,
-             20'500'000},
-    DrillRow{30, "b", "temperature warning", "EMCY 4310h", "finishes the step, HOLD", in_climbing,
-             1, warn_of_heat, nullptr, rests, harm_by_next_step, nullptr, 20'000'000, 20'500'000},
-    DrillRow{30, "c", "under-voltage warning", "EMCY 3120h", "not armed, torque stays", in_rest, 1,
-             warn_of_voltage, nullptr, stays_at_rest, harm_after_stop, arm_meanwhile, 500'000,
-             900'000},
-    DrillRow{31, "", "flood", "a wrong order each millisecond", "goes on", everywhere, 1, flood,
-             nullptr, takes_no_notice, harm_by_notice, flood, 300'000, 400'000},
     DrillRow{32, "", "disk full", "every write of the process fails", "goes on", everywhere, 1,
              fill_disk, nullptr, takes_no_notice, harm_by_notice, nullptr, 300'000, 400'000},
 };

@@ -6,8 +6,10 @@
 
 namespace robot_in_a_box {
 
-std::span<const DrillRow> rows_of_grasps();   ///< 1..10
-std::span<const DrillRow> rows_of_drives();   ///< 11..19
-std::span<const DrillRow> rows_of_process();  ///< 20..32
+std::span<const DrillRow> rows_of_messages();  ///< 1..3, 28, 31
+std::span<const DrillRow> rows_of_grasps();    ///< 4..10
+std::span<const DrillRow> rows_of_drives();    ///< 11..19
+std::span<const DrillRow> rows_of_process();   ///< 20..26, 32
+std::span<const DrillRow> rows_of_senses();    ///< 27, 30
 
 }  // namespace robot_in_a_box

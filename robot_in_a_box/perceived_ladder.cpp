@@ -35,13 +35,17 @@ void PerceivedLadder::update(std::int64_t now_us, const simulator::RobotPlant& p
   if (silent) return;
   tell(now_us, plant, T_odom_body * plant.T_world_body().inverse());
   spoil();
-  inbox_.accept(message_, {now_us, kEpoch_us + now_us}, newest_);
+  repeat(now_us);
+}
+
+void PerceivedLadder::repeat(std::int64_t now_us) {
+  inbox_.accept(message_, {now_us, kEpoch_us + wall_step_us + now_us}, newest_);
 }
 
 void PerceivedLadder::tell(std::int64_t now_us, const simulator::RobotPlant& plant,
                            const Eigen::Isometry3d& T_odom_world) {
   message_ = {};
-  message_.utime = kEpoch_us + now_us - kDelay_us;
+  message_.utime = kEpoch_us + wall_step_us + now_us - kDelay_us;
   message_.seq = seq_++;
   const auto rungs = plant.world().rungs();
   const double body_m = plant.T_world_body().translation().z();

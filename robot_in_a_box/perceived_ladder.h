@@ -52,6 +52,10 @@ class PerceivedLadder {
   std::vector<int> damaged_rungs;  ///< seen to be bent or broken off from the first
   double seen_from_m = -1e9;       ///< rungs nearer than this above the body are not seen
   Nonsense nonsense = Nonsense::kNone;
+  std::int64_t wall_step_us = 0;  ///< of the machine's wall clock, since the start
+
+  /// The last message once more, as from a flooded network.
+  void repeat(std::int64_t now_us);
 
  private:
   void tell(std::int64_t now_us, const simulator::RobotPlant& plant,
