@@ -19,14 +19,14 @@ namespace climb_controller {
 
 /// What holds the robot when its drives have no torque.
 enum class PowerOffHold : std::uint8_t {
-  kNone,  ///< nothing: it never leaves the ground
+  kNone,  ///< nothing, as long as nobody states otherwise: it never leaves the ground
   kBrake,
   kSelfLocking,  ///< the claws keep closed by themselves
 };
 
 struct CycleParams {
   climb::ControllerParams controller;
-  PowerOffHold power_off_hold = PowerOffHold::kBrake;
+  PowerOffHold power_off_hold = PowerOffHold::kNone;
   /// Ground tests: drives that do not stop and hold by themselves when the controller is gone, or
   /// that cannot limit and measure torque, are accepted; it arms where it stands and never climbs.
   bool allow_no_hold_on_loss = false;

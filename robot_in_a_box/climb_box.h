@@ -20,12 +20,19 @@
 
 namespace robot_in_a_box {
 
+/// As constructed, but for the drives of the plant: they have brakes.
+inline climb_controller::CycleParams cycle_with_brakes() {
+  climb_controller::CycleParams params;
+  params.power_off_hold = climb_controller::PowerOffHold::kBrake;
+  return params;
+}
+
 struct ClimbBoxParams {
   std::uint64_t seed = 1;
   simulator::PlantParams plant;
   simulator::MakeMechanics mechanics = simulator::make_quasi_static;
   PerceptionParams perception;
-  climb_controller::CycleParams cycle;  ///< its session id is overwritten by one from the seed
+  climb_controller::CycleParams cycle = cycle_with_brakes();  ///< session id: from the seed
   climb_controller::DriveLayout drives;
   std::int64_t bus_latency_us = 300;  ///< of a frame
 };

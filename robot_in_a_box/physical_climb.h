@@ -22,7 +22,7 @@ struct WeakRung {
 struct PhysicalClimbParams {
   simulator::SceneParams scene;
   PerceptionParams perception;
-  climb_controller::CycleParams cycle;
+  climb_controller::CycleParams cycle = cycle_with_brakes();
   std::vector<WeakRung> weak_rungs;  ///< they look sound
   std::uint64_t seed = 1;
 };

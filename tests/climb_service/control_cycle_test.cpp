@@ -112,11 +112,10 @@ TEST(ControlCycle, GroundTestHoldsAndNeverClimbs) {
   EXPECT_EQ(bench.violations(), "");
 }
 
-// With nothing to hold it without power the robot is armed in the dock and never leaves it.
+// With nothing to hold it without power, which is so unless somebody states otherwise, the robot is
+// armed in the dock and never leaves it.
 TEST(ControlCycle, WithoutPowerOffHoldItNeverLeavesTheGround) {
-  CycleParams params;
-  params.power_off_hold = PowerOffHold::kNone;
-  CycleBench bench({}, params);
+  CycleBench bench({}, CycleParams());
   ASSERT_TRUE(arm(bench)) << bench.problems();
   EXPECT_EQ(bench.order(Order::kClimb), CommandVerdict::kNotNow);
   EXPECT_EQ(bench.report.policy, Policy::kNoPowerOffHold);

@@ -39,8 +39,15 @@ class WatchedTransport final : public robot_in_a_box::MemoryTransport {
   std::function<void()> on_leave;
 };
 
+inline CycleParams with_brakes() {
+  CycleParams params;
+  params.power_off_hold = PowerOffHold::kBrake;
+  return params;
+}
+
 struct CycleBench {
-  explicit CycleBench(const simulator::PlantParams& plant_params = {}, CycleParams params = {})
+  explicit CycleBench(const simulator::PlantParams& plant_params = {},
+                      CycleParams params = with_brakes())
       : plant(plant_params, bus),
         transport(bus),
         monitor(simulator::MonitorParams(plant_params)),

@@ -51,7 +51,8 @@ class ClimbProcess : public ::testing::Test {
         kBin + "/climb_controller",
         std::vector<std::string>{"--url", url_, "--set", "climb.can.interface=" + can_interface,
                                  "--set", "climb.lines.chip=unix:" + folder_ + "/lines", "--set",
-                                 "climb.flight_folder=" + folder_});
+                                 "climb.flight_folder=" + folder_, "--set",
+                                 "climb.power_off_hold=brake"});
   }
   /// The exit code of ladder-command.
   int command(std::vector<std::string> words) {

@@ -27,6 +27,7 @@ std::int64_t monotonic_us() {
 
 climb_controller::CycleParams cycle_params() {
   climb_controller::CycleParams params;
+  params.power_off_hold = climb_controller::PowerOffHold::kBrake;
   params.controller.session_id = kSession;
   return params;
 }

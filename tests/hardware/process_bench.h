@@ -32,7 +32,8 @@ class ProcessBench {
   std::unique_ptr<support::ChildProcess> start_controller() const {
     return std::make_unique<support::ChildProcess>(
         bin_ + "/climb_controller",
-        std::vector<std::string>{"--url", kUrl, "--set", "climb.can.interface=vcan0"});
+        std::vector<std::string>{"--url", kUrl, "--set", "climb.can.interface=vcan0", "--set",
+                                 "climb.power_off_hold=brake"});
   }
 
   /// Exit code of ladder-command, or -1 when it does not end.
