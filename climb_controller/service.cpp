@@ -106,6 +106,7 @@ class ClimbService final : public runtime::Service {
   std::int64_t max_late_us_ = 0;  ///< since health was judged last
   std::int64_t pose_cycle_ = 0;
   std::int64_t state_cycle_ = 0;
+  std::uint64_t num_answers_told_ = 0;
   std::int64_t now_us_ = 0;
   std::int64_t news_us_ = 0;  ///< when the control thread was heard last
   bool is_in_time_ = true;
@@ -168,8 +169,10 @@ void ClimbService::publish(const CycleNews& news) {
     ++pose_.seq;
     context_.bus.publish(channels::kPose, pose_);
   }
-  const bool has_changed = state_.order_seq != news.report.order_seq;
-  if (news.num_cycles - state_cycle_ < kStateEvery && !has_changed) return;
+  // An answer is told at once, also one to a stranger, whose number is not repeated.
+  const bool has_answered = num_answers_told_ != news.report.num_answers;
+  if (news.num_cycles - state_cycle_ < kStateEvery && !has_answered) return;
+  num_answers_told_ = news.report.num_answers;
   state_cycle_ = news.num_cycles;
   to_message(news.report, state_);
   state_.utime = news.utime_us;
