@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A uniform grid of cubic cells over space, periodic so that its table is small: cells one period
-// apart share a table entry and with it their nodes. Holds copies of node positions, 16 to a cell,
-// laid out for SIMD. Only stores; the search is in winner_search.cpp.
+// Two uniform grids of cubic cells over space (density differs by a factor of 100 and more between
+// the suspected area and the rest, so each has its own side) with small tables: cells far apart
+// may share a table entry and with it their nodes. Holds copies of node positions, 16 to a cell,
+// laid out for SIMD. Only stores; the search is in winner_search.h.
 #pragma once
 
 #include <array>
@@ -15,6 +16,7 @@ namespace ddgng {
 class CellGrid {
  public:
   static constexpr int kLanes = 16;
+  static constexpr int kNumLevels = 2;  ///< outside and inside the suspected area
 
   /// Empty lanes lie at Graph::kFar_m. A cell with more nodes goes on in next (0 = ends here).
   struct alignas(64) Cell {
@@ -24,22 +26,69 @@ class CellGrid {
     std::uint16_t next;
   };
 
+  /// Where a node is. Nobody need be told while it stays within reach of a centre on every axis:
+  /// then it is still in its cell, and in the same cell of the finer grid. The fourth elements are 0.
+  struct alignas(64) Place {
+    std::array<float, 4> position_m{};
+    std::array<float, 4> center_m{};
+    std::array<float, 4> reach_m{};
+    std::uint16_t cell = 0;
+    std::uint16_t lane = 0;
+    std::uint32_t entry = 0;
+    int level = 0;
+  };
+
+  /// One grid: what is needed to find the cells round a point. Cells whose coordinates differ by a
+  /// vector of a lattice share a table entry. The lattice lies aslant, so that floors, walls and
+  /// posts do not fall upon themselves.
+  struct Level {
+    float side_m = 1.0F;
+    float per_side = 1.0F;
+    int num_nodes = 0;
+    std::uint32_t mask = 0;
+    std::vector<std::uint16_t> table;
+
+    static constexpr std::uint32_t kPerY = 249015;
+    static constexpr std::uint32_t kPerZ = 55423;
+    std::uint32_t entry(int cx, int cy, int cz) const {
+      return (static_cast<std::uint32_t>(cx) + static_cast<std::uint32_t>(cy) * kPerY +
+              static_cast<std::uint32_t>(cz) * kPerZ) &
+             mask;
+    }
+    /// The first cell at these cell coordinates; index 0 = no node there.
+    std::uint16_t first(int cx, int cy, int cz) const { return table[entry(cx, cy, cz)]; }
+  };
+  static constexpr int kMinTableBits = 9;
+  static constexpr int kMaxTableBits = 18;
+  /// In a cube of so many cells all have entries of their own; for tables of 2^9 ... 2^18 entries.
+  static constexpr std::array<int, kMaxTableBits - kMinTableBits + 1> kDistinct = {
+      4, 7, 7, 14, 16, 21, 24, 33, 35, 51};
+  int num_distinct() const { return kDistinct[table_bits_ - kMinTableBits]; }
+
+  /// A node lies at most this part of a side outside of its cell (because of reach, and of rounding
+  /// while coordinates are below kMaxSides).
+  static constexpr float kSlack = 2e-3F;
+  static constexpr float kMaxSides = 4000.0F;
+
   explicit CellGrid(int num_slots);
 
   /// Forgets all nodes.
-  void clear(float side_m);
+  void clear();
 
-  float side_m() const { return side_m_; }
-  float per_side() const { return per_side_; }
-  int num_nodes() const { return num_nodes_; }
-
-  void add(int slot, const Eigen::Vector3f& position_m);
+  void add(int slot, int level, const Eigen::Vector3f& position_m);
   void remove(int slot);
-  void move(int slot, const Eigen::Vector3f& position_m);
+  /// Moves the node, if need be into another cell. True: it is out of reach of the former centre.
+  bool move(int slot, const Eigen::Vector3f& position_m);
+  /// Cells of this side from now on.
+  void resize(int level, float side_m);
 
-  /// The first cell of the table entry; index 0 = no node there. Any coordinates.
-  std::uint16_t first(int cx, int cy, int cz) const { return table_[entry(cx, cy, cz)]; }
-  const Cell& cell(std::uint16_t index) const { return cells_[index]; }
+  const Level& level(int index) const { return levels_[index]; }
+  const Cell* cells() const { return cells_.data(); }
+  const Place& place(int slot) const { return places_[slot]; }
+
+  // For the signal step, which moves nodes itself as long as they stay in their cells.
+  Cell* cells() { return cells_.data(); }
+  Place* places() { return places_.data(); }
 
   /// Cell coordinate of a coordinate in cell sides, |f| < 2^31.
   static int floor_to_int(float f) {
@@ -48,28 +97,18 @@ class CellGrid {
   }
 
  private:
-  struct Place {
-    int cx = 0, cy = 0, cz = 0;
-    std::uint16_t cell = 0;
-    std::uint16_t lane = 0;
-  };
-
-  int entry(int cx, int cy, int cz) const {
-    return (cx & mask_) | (cy & mask_) << bits_ | (cz & mask_) << (2 * bits_);
-  }
+  std::array<int, 3> set_reach(Place& place) const;
+  void put(int slot);
+  void take_out(int slot);
   std::uint16_t take_cell();
   void clear_lane(Cell& cell, int lane);
-  void release_cell(int table_entry, std::uint16_t index);
+  void release_cell(Level& level, std::uint32_t entry, std::uint16_t index);
 
-  int bits_ = 1;
-  int mask_ = 1;
-  float side_m_ = 1.0F;
-  float per_side_ = 1.0F;
-  int num_nodes_ = 0;
-  std::vector<std::uint16_t> table_;
-  std::vector<Cell> cells_;  // cells_[0] stays empty
+  int table_bits_ = kMinTableBits;
+  std::array<Level, kNumLevels> levels_;
+  std::vector<Cell> cells_;  // of both grids; cells_[0] stays empty
   std::vector<std::uint16_t> free_;
-  std::vector<Place> places_;  // per slot
+  std::vector<Place> places_;  // per slot; cell 0 = no node
 };
 
 }  // namespace ddgng

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ddgng/ddgng.h"
 
+#include <algorithm>
+#include <array>
+
 #include "base/check.h"
 
 namespace ddgng {
@@ -73,18 +76,21 @@ std::span<const std::uint32_t> DynamicDensityGng::attend(const CloudView& cloud)
   return points;
 }
 
-// Lines 3-20 for all signals of a frame.
+// Lines 3-20 for all signals of a frame, in runs between the checks that may change the nodes.
 void DynamicDensityGng::learn(std::span<const Signal> signals, int max_plane_nodes) {
-  const GrowingParams& params = params_.growing;
-  int num_signals = 0;
-  for (const Signal& signal : signals) {
-    const Winners winners = growing_.signal(signal.position_m);
-    moments_.add(winners.first, signal.head, signal.position_m, winners.first_m2);
-    ++num_signals;
-    if (num_signals % params.utility_interval == 0) growing_.remove_useless();
-    if (num_signals % params.insertion_interval == 0) {
-      insertion_round(num_signals / params.insertion_interval, max_plane_nodes);
-    }
+  const int utility_interval = params_.growing.utility_interval;
+  const int insertion_interval = params_.growing.insertion_interval;
+  const auto num_signals = static_cast<int>(signals.size());
+  std::array<Winners, 64> winners;
+  for (int begin = 0, end = 0; begin < num_signals; begin = end) {
+    end = std::min({num_signals, begin + static_cast<int>(winners.size()),
+                    (begin / utility_interval + 1) * utility_interval,
+                    (begin / insertion_interval + 1) * insertion_interval});
+    const std::span<const Signal> run = signals.subspan(begin, end - begin);
+    growing_.signals(run, winners.data());
+    moments_.add(run, winners.data());
+    if (end % utility_interval == 0) growing_.remove_useless();
+    if (end % insertion_interval == 0) insertion_round(end / insertion_interval, max_plane_nodes);
   }
 }
 

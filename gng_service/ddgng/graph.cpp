@@ -85,6 +85,7 @@ void Graph::drop_half(int a, int k) {
   --links.degree;
   links.neighbour[k] = links.neighbour[links.degree];
   links.born[k] = links.born[links.degree];
+  links.neighbour[links.degree] = kNobody;
 }
 
 void Graph::add_half(int a, int b) {

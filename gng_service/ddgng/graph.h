@@ -54,6 +54,18 @@ class Graph {
   /// Removes the node and its edges.
   void remove_node(int slot);
 
+  /// The edges of one node. The age is not stored but follows from the two ends' wins, so that
+  /// ageing costs one increment: age = wins[a] + wins[b] - born, in 16 bits; max_edge_age keeps true
+  /// ages far below the wrap.
+  struct alignas(64) Links {
+    std::array<std::uint16_t, kDegreeLimit + 1> neighbour;  ///< kNobody from degree on
+    std::array<std::uint16_t, kDegreeLimit> born{};
+    std::uint16_t degree = 0;
+
+    Links() { neighbour.fill(kNobody); }
+  };
+  static constexpr std::uint16_t kNobody = 0xFFFF;
+
   int degree(int slot) const { return links_[slot].degree; }
   /// Slots in no particular order; valid until the next change.
   std::span<const std::uint16_t> neighbours(int slot) const {
@@ -72,15 +84,16 @@ class Graph {
   int join(int a, int b);
   void separate(int a, int b);
 
- private:
-  // The age is not stored but follows from the two ends' wins, so that ageing costs one increment:
-  // age = wins[a] + wins[b] - born, in 16 bits; max_edge_age keeps true ages far below the wrap.
-  struct alignas(64) Links {
-    std::uint16_t degree = 0;
-    std::array<std::uint16_t, kDegreeLimit> neighbour{};
-    std::array<std::uint16_t, kDegreeLimit> born{};
-  };
+  // For the signal step (growing_signals.cpp), which does the frequent part itself.
+  Links& links(int slot) { return links_[slot]; }
+  std::uint16_t* wins() { return wins_.data(); }
+  void set_position(int slot, float x_m, float y_m, float z_m) {
+    x_m_[slot] = x_m;
+    y_m_[slot] = y_m;
+    z_m_[slot] = z_m;
+  }
 
+ private:
   int find(int a, int b) const;
   void drop_half(int a, int k);
   void add_half(int a, int b);

@@ -4,15 +4,13 @@
 // the caller (Algorithm 1, ddgng.cpp).
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <span>
 
 #include <Eigen/Core>
 
-#include "ddgng/decay.h"
-#include "ddgng/extremes.h"
-#include "ddgng/graph.h"
+#include "ddgng/growing_state.h"
 #include "ddgng/params.h"
+#include "ddgng/sampler.h"
 #include "ddgng/winner_search.h"
 
 namespace ddgng {
@@ -20,16 +18,17 @@ namespace ddgng {
 class Growing {
  public:
   /// check(params) must be "".
-  explicit Growing(const GrowingParams& params);
+  explicit Growing(const GrowingParams& params) : state_(params) {}
 
-  void clear();
+  void clear() { state_.clear(); }
 
   /// The first two nodes, not joined (the first signal joins them).
   void start(const Eigen::Vector3f& h1_m, const Eigen::Vector3f& h2_m);
-  bool started() const { return graph_.num_nodes() >= 2; }
+  bool started() const { return graph().num_nodes() >= 2; }
 
-  /// One signal: winners, edge, error and utility, move, ageing, decay. Needs started().
-  Winners signal(const Eigen::Vector3f& signal_m);
+  /// Signals one after the other, each: winners, edge, error and utility, move, ageing, decay. Writes
+  /// the winners of each; they may have been removed since. Needs started(). growing_signals.cpp
+  void signals(std::span<const Signal> signals, Winners* winners);
 
   enum class Weighting { kError, kErrorAndStrength };
   /// A node half way between the node of the largest (weighted) error and its worst neighbour.
@@ -42,51 +41,29 @@ class Growing {
   int remove_useless();
 
   /// Whether the node lies in the suspected area (Alg. 2).
-  void set_inside(int slot, bool inside);
-  bool inside(int slot) const { return inside_[slot] != 0; }
-  int num_inside() const { return num_inside_; }
+  void set_inside(int slot, bool inside) { state_.set_inside(slot, inside); }
+  bool inside(int slot) const { return state_.inside[slot] != 0; }
+  int num_inside() const { return state_.num_inside; }
 
-  const Graph& graph() const { return graph_; }
-  float error_m2(int slot) const { return error_decay_.value(error_[slot]); }
-  float utility_m2(int slot) const { return decay_of(slot).value(utility_[slot]); }
+  const Graph& graph() const { return state_.graph; }
+  float error_m2(int slot) const { return state_.error_decay.value(state_.error[slot]); }
+  float utility_m2(int slot) const { return state_.utility_m2(slot); }
   float strength(int slot) const;
 
-  /// Since clear().
-  struct Counts {
-    std::int64_t signals = 0;
-    std::int64_t inserted = 0;
-    std::int64_t removed_by_age = 0;
-    std::int64_t removed_by_utility = 0;
-    std::int64_t edges_dropped = 0;  ///< given up because a node was full
-  };
-  const Counts& counts() const { return counts_; }
+  using Counts = GrowingState::Counts;
+  const Counts& counts() const { return state_.counts; }
   /// For comparison: the same winners, found by looking at every node.
-  void search_linearly() { search_.search_linearly(); }
-  const WinnerSearch::Counts& search_counts() const { return search_.counts(); }
+  void search_linearly() { state_.search.search_linearly(); }
+  const WinnerSearch::Counts& search_counts() const { return state_.search.counts(); }
 
  private:
-  const Decay& decay_of(int slot) const { return utility_decay_[inside_[slot]]; }
-  void move_towards(int slot, const Eigen::Vector3f& signal_m, float rate);
-  void remove_old_edges(int s1);
-  void fade();
-  void remove(int slot);
-  SlotValues values() const { return {error_.data(), utility_.data(), inside_.data()}; }
-  int place(const Eigen::Vector3f& position_m, float error, float utility);
+  SlotValues values() const {
+    return {state_.error.data(), state_.utility.data(), state_.inside.data()};
+  }
   int largest_error(Weighting weighting);
   float weighted_error(int slot, Weighting weighting) const;
 
-  GrowingParams params_;
-  float inside_weight_;
-  Graph graph_;
-  WinnerSearch search_;
-  // Over slots, as stored by their decays.
-  std::vector<float> error_, utility_;
-  std::vector<std::uint8_t> inside_;
-  Extremes extremes_;
-  Decay error_decay_;
-  Decay utility_decay_[2];  // outside, inside
-  int num_inside_ = 0;
-  Counts counts_;
+  GrowingState state_;
 };
 
 }  // namespace ddgng

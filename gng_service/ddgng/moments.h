@@ -4,12 +4,15 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "ddgng/params.h"
+#include "ddgng/sampler.h"
 #include "ddgng/topology.h"
+#include "ddgng/winner_search.h"
 
 namespace ddgng {
 
@@ -24,6 +27,14 @@ class Moments {
   void forget();
   /// The slot won this point, at this squared distance; beyond the gate it is not counted.
   void add(int slot, int head, const Eigen::Vector3f& point_m, float distance_m2);
+
+  /// The same for each signal and its winners.
+  void add(std::span<const Signal> signals, const Winners* winners) {
+    for (const Signal& signal : signals) {
+      add(winners->first, signal.head, signal.position_m, winners->first_m2);
+      ++winners;
+    }
+  }
 
   /// Appends the slot's moments in ascending order of head; node is the index to write into them.
   void append(int slot, int node, std::vector<Moment>& moments) const;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -15,7 +16,11 @@ namespace ddgng {
 
 class Occupancy {
  public:
-  Occupancy() : rows_(kRows * kRows) {}
+  explicit Occupancy(int num_nodes) {
+    std::size_t num_rows = 1024;
+    while (2 * num_rows < static_cast<std::size_t>(num_nodes)) num_rows *= 2;
+    rows_.resize(num_rows);
+  }
 
   /// Forgets all marks; cubes of this side from now on.
   void clear(float side_m) {
@@ -23,44 +28,65 @@ class Occupancy {
     std::fill(rows_.begin(), rows_.end(), std::uint64_t{0});
   }
 
-  /// A node is here.
-  void mark(const Eigen::Vector3f& position_m) {
-    const int cx = CellGrid::floor_to_int(position_m.x() * per_side_);
-    const int cy = CellGrid::floor_to_int(position_m.y() * per_side_);
-    const int cz = CellGrid::floor_to_int(position_m.z() * per_side_);
-    row(cy, cz) |= std::uint64_t{1} << (cx & 63);
+  /// A node is within these distances of the centre and stays there, but for a few percent of them.
+  void mark(const Eigen::Vector3f& center_m, const Eigen::Vector3f& reach_m) {
+    const Range x = range(center_m.x(), kMarked * reach_m.x());
+    const Range y = range(center_m.y(), kMarked * reach_m.y());
+    const Range z = range(center_m.z(), kMarked * reach_m.z());
+    for (int cz = z.first; cz <= z.last; ++cz) {
+      for (int cy = y.first; cy <= y.last; ++cy) row(cy, cz) |= mask(x);
+    }
   }
 
-  /// False: no mark within this distance of the point. O((radius / side)^2). Both in reach of
-  /// exact float cells (see WinnerSearch).
+  /// False: no node within this distance of the point on any axis. O((radius / side)^2).
   bool maybe_within(const Eigen::Vector3f& point_m, float radius_m) const {
-    constexpr float kSlack = 1e-3F;  // of a side, for rounding
-    const float r = radius_m * per_side_ + kSlack;
-    const Eigen::Vector3f f = point_m * per_side_;
-    const int x0 = CellGrid::floor_to_int(f.x() - r);
-    const int x1 = CellGrid::floor_to_int(f.x() + r);
-    const int z1 = CellGrid::floor_to_int(f.z() + r);
-    const int y1 = CellGrid::floor_to_int(f.y() + r);
-    if (x1 - x0 >= kRows - 1) return true;
-    std::uint64_t mask = (std::uint64_t{2} << (x1 - x0)) - 1;
-    const int shift = x0 & 63;
-    if (shift > 0) mask = mask << shift | mask >> (64 - shift);
-    for (int cz = CellGrid::floor_to_int(f.z() - r); cz <= z1; ++cz) {
-      for (int cy = CellGrid::floor_to_int(f.y() - r); cy <= y1; ++cy) {
-        if ((row(cy, cz) & mask) != 0) return true;
+    const float reach_m = radius_m + kSlack / per_side_;
+    const Range x = range(point_m.x(), reach_m);
+    const Range y = range(point_m.y(), reach_m);
+    const Range z = range(point_m.z(), reach_m);
+    if (y.last - y.first >= kMaxWidth || z.last - z.first >= kMaxWidth) return true;
+    for (int cz = z.first; cz <= z.last; ++cz) {
+      for (int cy = y.first; cy <= y.last; ++cy) {
+        if ((row(cy, cz) & mask(x)) != 0) return true;
       }
     }
     return false;
   }
 
+  /// False: no node in the 2 x 2 x 2 cubes from this one on, except within kSlack of their border.
+  bool maybe_in_block(int cx, int cy, int cz) const {
+    const std::uint64_t rows =
+        row(cy, cz) | row(cy + 1, cz) | row(cy, cz + 1) | row(cy + 1, cz + 1);
+    return (rows & mask({cx, cx + 1})) != 0;
+  }
+
+  static constexpr float kSlack = 0.02F;  ///< of a side
+
  private:
-  static constexpr int kRows = 32;  // periods of y and z; that of x is 64, one word
-  std::uint64_t& row(int cy, int cz) {
-    return rows_[(cz & (kRows - 1)) * kRows + (cy & (kRows - 1))];
+  static constexpr int kMaxWidth = 64;
+  // Less than reached, so that a node which fills a cube does not mark the cubes round it.
+  static constexpr float kMarked = 0.98F;
+
+  struct Range {
+    int first = 0, last = 0;
+  };
+  Range range(float center_m, float reach_m) const {
+    return {CellGrid::floor_to_int((center_m - reach_m) * per_side_),
+            CellGrid::floor_to_int((center_m + reach_m) * per_side_)};
   }
-  const std::uint64_t& row(int cy, int cz) const {
-    return rows_[(cz & (kRows - 1)) * kRows + (cy & (kRows - 1))];
+  static std::uint64_t mask(const Range& x) {
+    if (x.last - x.first >= 63) return ~std::uint64_t{0};
+    const std::uint64_t mask = (std::uint64_t{2} << (x.last - x.first)) - 1;
+    return std::rotl(mask, x.first & 63);
   }
+  // A row of 64 cubes along x; rows far apart share a word.
+  std::size_t row_index(int cy, int cz) const {
+    constexpr std::uint32_t kPerZ = 40503;
+    return (static_cast<std::uint32_t>(cy) + static_cast<std::uint32_t>(cz) * kPerZ) &
+           (rows_.size() - 1);
+  }
+  std::uint64_t& row(int cy, int cz) { return rows_[row_index(cy, cz)]; }
+  const std::uint64_t& row(int cy, int cz) const { return rows_[row_index(cy, cz)]; }
 
   float per_side_ = 1.0F;
   std::vector<std::uint64_t> rows_;

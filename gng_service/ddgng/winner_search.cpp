@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include "ddgng/nearest_two-inl.h"
+
 #ifndef DDGNG_WINNER_SEARCH_ONCE
 #define DDGNG_WINNER_SEARCH_ONCE
 #include <cmath>
@@ -17,10 +19,18 @@ namespace ddgng {
 
 // The cells that one search looks at, and its answer.
 struct CellList {
-  static constexpr int kMax = 32;
+  static constexpr int kMax = 64;
   std::array<const CellGrid::Cell*, kMax> cells;
   int num = 0;
-  bool overflow = false;
+
+  /// False: full.
+  bool push(const CellGrid& grid, std::uint16_t index) {
+    for (; index != 0; index = grid.cells()[index].next) {
+      if (num == kMax) return false;
+      cells[num++] = &grid.cells()[index];
+    }
+    return true;
+  }
 };
 
 }  // namespace ddgng
@@ -33,7 +43,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // Each lane keeps the two best of its own column; a strict comparison over ascending slots leaves
 // the lowest slot of equals. The columns are merged by (distance, slot) at the end.
-Winners NearestTwo(const Graph& graph, const Eigen::Vector3f& signal_m) {
+Winners NearestTwoOfAll(const Graph& graph, const Eigen::Vector3f& signal_m) {
   const hn::CappedTag<float, Graph::kSlotBlock> d;
   const hn::RebindToSigned<decltype(d)> di;
   constexpr int kMaxLanes = Graph::kSlotBlock;
@@ -154,6 +164,11 @@ Winners NearestTwoInCells(const CellList& list, const Eigen::Vector3f& signal_m)
   return winners;
 }
 
+Winners NearestTwoInGrid(WinnerSearch& search, const Graph& graph, const Eigen::Vector3f& v) {
+  HWY_ALIGN const float signal_m[4] = {v.x(), v.y(), v.z(), 0.0F};
+  return NearestTwo(search, graph, signal_m);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace ddgng
 HWY_AFTER_NAMESPACE();
@@ -162,150 +177,140 @@ HWY_AFTER_NAMESPACE();
 namespace ddgng {
 namespace {
 
-HWY_EXPORT(NearestTwo);
+HWY_EXPORT(NearestTwoOfAll);
 HWY_EXPORT(NearestTwoInCells);
+HWY_EXPORT(NearestTwoInGrid);
 
-// Cells this many RMS second distances wide: few nodes per block of cells, few linear fallbacks.
-// Not swept.
-constexpr float kSidePerSpacing = 2.6F;
+// Cells this many RMS second distances wide: few nodes per block of cells, few wide searches.
+constexpr float kSidePerSpacing = 3.0F;
 constexpr float kMinSide_m = 1e-3F;
-constexpr float kOccupancyPart = 0.25F;  // of the outside grid's side
-// Where a node lies in its cell is known to this part of a side: rounding of |f| < kMaxSides.
-constexpr float kSlack = 1e-3F;
-constexpr float kMaxSides = 4000.0F;
-
-void push(CellList& list, const CellGrid& grid, std::uint16_t index) {
-  for (; index != 0; index = grid.cell(index).next) {
-    if (list.num == CellList::kMax) {
-      list.overflow = true;
-      return;
-    }
-    list.cells[list.num++] = &grid.cell(index);
-  }
-}
-
-bool addressable(const Eigen::Vector3f& f) {
-  return f.cwiseAbs().maxCoeff() < kMaxSides;  // false for NaN
-}
-
-// Adds the 2 x 2 x 2 cells around the nearest cell corner; returns the squared distance [m2] below
-// which no node outside of them can be.
-float push_block(CellList& list, const CellGrid& grid, const Eigen::Vector3f& signal_m) {
-  const Eigen::Vector3f f = signal_m * grid.per_side();
-  if (!addressable(f)) return 0.0F;
-  const int cx = CellGrid::floor_to_int(f.x() - 0.5F);
-  const int cy = CellGrid::floor_to_int(f.y() - 0.5F);
-  const int cz = CellGrid::floor_to_int(f.z() - 0.5F);
-  for (int i = 0; i < 8; ++i) {
-    push(list, grid, grid.first(cx + (i & 1), cy + (i >> 1 & 1), cz + (i >> 2)));
-  }
-  const Eigen::Vector3f u =
-      f - Eigen::Vector3f(static_cast<float>(cx), static_cast<float>(cy), static_cast<float>(cz));
-  const float border = std::min(u.minCoeff(), 2.0F - u.maxCoeff()) - kSlack;
-  const float border_m = std::max(0.0F, border) * grid.side_m();
-  return border_m * border_m;
-}
-
-// The same for the one cell that holds the signal.
-float push_cell(CellList& list, const CellGrid& grid, const Eigen::Vector3f& signal_m) {
-  const Eigen::Vector3f f = signal_m * grid.per_side();
-  if (!addressable(f)) return 0.0F;
-  const int cx = CellGrid::floor_to_int(f.x());
-  const int cy = CellGrid::floor_to_int(f.y());
-  const int cz = CellGrid::floor_to_int(f.z());
-  push(list, grid, grid.first(cx, cy, cz));
-  const Eigen::Vector3f u =
-      f - Eigen::Vector3f(static_cast<float>(cx), static_cast<float>(cy), static_cast<float>(cz));
-  const float border = std::min(u.minCoeff(), 1.0F - u.maxCoeff()) - kSlack;
-  const float border_m = std::max(0.0F, border) * grid.side_m();
-  return border_m * border_m;
-}
+// A wide search looks at no more entries of the table than one for so many nodes.
+constexpr int kNodesPerEntry = 8;
 
 }  // namespace
 
 Winners nearest_two_linear(const Graph& graph, const Eigen::Vector3f& signal_m) {
-  return HWY_DYNAMIC_DISPATCH(NearestTwo)(graph, signal_m);
+  return HWY_DYNAMIC_DISPATCH(NearestTwoOfAll)(graph, signal_m);
 }
 
-WinnerSearch::WinnerSearch(int num_slots) : grids_{CellGrid(num_slots), CellGrid(num_slots)} {
+WinnerSearch::WinnerSearch(int num_slots)
+    : grid_(num_slots), others_{Occupancy(num_slots), Occupancy(num_slots)} {
   clear();
 }
 
 void WinnerSearch::clear() {
-  for (CellGrid& grid : grids_) grid.clear(1.0F);
-  inside_nodes_.clear(kOccupancyPart);
+  grid_.clear();
+  for (Occupancy& others : others_) others.clear(1.0F);
   spacing_m2_ = {};
   until_check_ = {16, 16};
   until_mark_ = 0;
   counts_ = {};
 }
 
+void WinnerSearch::add(int slot, bool inside, const Eigen::Vector3f& position_m) {
+  if (linear_only_) return;
+  grid_.add(slot, inside ? 1 : 0, position_m);
+  mark(slot);
+}
+
+void WinnerSearch::remove(int slot) {
+  if (!linear_only_) grid_.remove(slot);
+}
+
+void WinnerSearch::move(int slot, const Eigen::Vector3f& position_m) {
+  if (!linear_only_ && grid_.move(slot, position_m)) mark(slot);
+}
+
+void WinnerSearch::mark(int slot) {
+  const CellGrid::Place& place = grid_.place(slot);
+  others_[1 - place.level].mark(Eigen::Vector3f(place.center_m.data()),
+                                Eigen::Vector3f(place.reach_m.data()));
+}
+
+bool WinnerSearch::others_within(int level, const Eigen::Vector3f& point_m,
+                                 float distance_m2) const {
+  return others_[level].maybe_within(point_m, std::sqrt(distance_m2));
+}
+
 Winners WinnerSearch::nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m) {
-  ++counts_.searches;
-  if (linear_only_) {
-    ++counts_.linear;
-    return nearest_two_linear(graph, signal_m);
-  }
-  const auto& [outside, inside] = grids_;
-  CellList list;
-  const float inside_m2 =
-      inside.num_nodes() == 0 ? hwy::HighestValue<float>() : push_block(list, inside, signal_m);
-  // In the dense area a single cell of the sparse grid usually proves that nothing else is near.
-  if (list.num > 0) {
-    const int num_inside_cells = list.num;
-    const float outside_m2 =
-        outside.num_nodes() == 0 ? hwy::HighestValue<float>() : push_cell(list, outside, signal_m);
-    if (!list.overflow) {
-      const Winners winners = HWY_DYNAMIC_DISPATCH(NearestTwoInCells)(list, signal_m);
-      if (winners.second_m2 < std::min(inside_m2, outside_m2)) return winners;
-    }
-    list.num = num_inside_cells;
-  }
-  const float outside_m2 = push_block(list, outside, signal_m);
-  if (list.num > 0 && !list.overflow) {
-    const Winners winners = HWY_DYNAMIC_DISPATCH(NearestTwoInCells)(list, signal_m);
-    if (winners.second_m2 < outside_m2 &&
-        (winners.second_m2 < inside_m2 ||
-         !inside_nodes_.maybe_within(signal_m, std::sqrt(winners.second_m2)))) {
-      return winners;
+  return HWY_DYNAMIC_DISPATCH(NearestTwoInGrid)(*this, graph, signal_m);
+}
+
+Winners WinnerSearch::nearest_two_wide(const Graph& graph, const Eigen::Vector3f& signal_m,
+                                       float second_m2) {
+  ++counts_.wide;
+  if (!linear_only_) {
+    CellList list;
+    if (list_ball(signal_m, second_m2, list)) {
+      return HWY_DYNAMIC_DISPATCH(NearestTwoInCells)(list, signal_m);
     }
   }
   ++counts_.linear;
   return nearest_two_linear(graph, signal_m);
 }
 
-float WinnerSearch::fitting_side_m(int area) const {
-  return std::max(kMinSide_m, kSidePerSpacing * std::sqrt(spacing_m2_[area]));
+// All cells of both levels that a ball round the signal touches; false: too many.
+bool WinnerSearch::list_ball(const Eigen::Vector3f& signal_m, float second_m2,
+                             CellList& list) const {
+  const float radius_m = std::sqrt(second_m2);
+  for (int index = 0; index < CellGrid::kNumLevels; ++index) {
+    const CellGrid::Level& level = grid_.level(index);
+    const float sides = radius_m * level.per_side;
+    const Eigen::Vector3f f = signal_m * level.per_side;
+    if (!(f.cwiseAbs().maxCoeff() + sides < CellGrid::kMaxSides)) return false;  // also NaN
+    if (level.num_nodes == 0) continue;
+    if (!others_[1 - index].maybe_within(signal_m, radius_m)) continue;
+    const float reach = sides + CellGrid::kSlack;
+    std::array<int, 3> low{};
+    std::array<int, 3> high{};
+    int num_cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = CellGrid::floor_to_int(f[axis] - reach);
+      high[axis] = CellGrid::floor_to_int(f[axis] + reach);
+      const int width = high[axis] - low[axis] + 1;
+      if (width > grid_.num_distinct()) return false;  // a cell would be looked at twice
+      num_cells *= width;
+    }
+    if (kNodesPerEntry * num_cells > level.num_nodes + 256) return false;
+    for (int cz = low[2]; cz <= high[2]; ++cz) {
+      for (int cy = low[1]; cy <= high[1]; ++cy) {
+        for (int cx = low[0]; cx <= high[0]; ++cx) {
+          if (!list.push(grid_, level.first(cx, cy, cz))) return false;
+        }
+      }
+    }
+  }
+  return list.num > 0;
 }
 
-void WinnerSearch::learn_spacing(const Graph& graph, const std::uint8_t* inside_of,
-                                 const Winners& winners) {
-  if (linear_only_) return;
-  const int area = inside_of[winners.first];
-  spacing_m2_[area] += (winners.second_m2 - spacing_m2_[area]) * (1.0F / 64.0F);
-  if (--until_check_[area] <= 0) {
-    until_check_[area] = 256;
-    const float ratio = fitting_side_m(area) * grids_[area].per_side();
-    if (ratio < 0.75F || ratio > 1.33F) refit(graph, inside_of, area);
-  }
-  if (--until_mark_ <= 0) mark_inside(graph, inside_of);
+float WinnerSearch::fitting_side_m(int level) const {
+  return std::max(kMinSide_m, kSidePerSpacing * std::sqrt(spacing_m2_[level]));
 }
 
-void WinnerSearch::refit(const Graph& graph, const std::uint8_t* inside_of, int area) {
-  grids_[area].clear(fitting_side_m(area));
-  for (int slot = 0; slot < graph.num_slots(); ++slot) {
-    if (!graph.alive(slot) || inside_of[slot] != area) continue;
-    grids_[area].add(slot, graph.position_m(slot));
+void WinnerSearch::learn_spacing(const Graph& graph, const Winners& winners, int num_searches) {
+  if (linear_only_ || !graph.alive(winners.first)) return;
+  const int level = grid_.place(winners.first).level;
+  spacing_m2_[level] += (winners.second_m2 - spacing_m2_[level]) * (1.0F / 64.0F);
+  if (--until_check_[level] <= 0) {
+    until_check_[level] = 64;
+    const float ratio = fitting_side_m(level) * grid_.level(level).per_side;
+    if (ratio < 0.75F || ratio > 1.33F) {
+      grid_.resize(level, fitting_side_m(level));
+      mark_all(graph);
+    }
   }
-  if (area == 0) mark_inside(graph, inside_of);
+  until_mark_ -= num_searches;
+  if (until_mark_ <= 0) mark_all(graph);
 }
 
 // Forgets the places that nodes have left.
-void WinnerSearch::mark_inside(const Graph& graph, const std::uint8_t* inside_of) {
+void WinnerSearch::mark_all(const Graph& graph) {
   until_mark_ = std::max(1024, 4 * graph.num_slots());
-  inside_nodes_.clear(kOccupancyPart * grids_[0].side_m());
+  for (int level = 0; level < CellGrid::kNumLevels; ++level) {
+    others_[level].clear(grid_.level(level).side_m);
+  }
   for (int slot = 0; slot < graph.num_slots(); ++slot) {
-    if (graph.alive(slot) && inside_of[slot] != 0) inside_nodes_.mark(graph.position_m(slot));
+    if (graph.alive(slot)) mark(slot);
   }
 }
 

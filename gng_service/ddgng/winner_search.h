@@ -25,9 +25,10 @@ struct Winners {
 /// Looks at every slot. Needs at least two nodes. O(slots).
 Winners nearest_two_linear(const Graph& graph, const Eigen::Vector3f& signal_m);
 
-/// The same answer from a few cells. Density differs by a factor of 100 and more between the
-/// suspected area and the rest, so each has a grid of its own; where the cells cannot prove their
-/// answer, all slots are looked at. Must be told of every change of the graph.
+/// The same answer from the few cells round the signal: first from a block of eight
+/// (nearest_two-inl.h); where that cannot prove its answer, from all cells that a ball of the second
+/// distance touches; where those are too many, from all slots. Must be told of every change of the
+/// graph.
 class WinnerSearch {
  public:
   explicit WinnerSearch(int num_slots);
@@ -35,41 +36,50 @@ class WinnerSearch {
   void clear();
   /// For comparison: from now on every answer comes from all slots, and no cells are kept.
   void search_linearly() { linear_only_ = true; }
-  void add(int slot, bool inside, const Eigen::Vector3f& position_m) {
-    if (linear_only_) return;
-    grids_[inside ? 1 : 0].add(slot, position_m);
-    if (inside) inside_nodes_.mark(position_m);
-  }
-  void remove(int slot, bool inside) {
-    if (!linear_only_) grids_[inside ? 1 : 0].remove(slot);
-  }
-  void move(int slot, bool inside, const Eigen::Vector3f& position_m) {
-    if (linear_only_) return;
-    grids_[inside ? 1 : 0].move(slot, position_m);
-    if (inside) inside_nodes_.mark(position_m);
-  }
+  bool linear_only() const { return linear_only_; }
+
+  void add(int slot, bool inside, const Eigen::Vector3f& position_m);
+  void remove(int slot);
+  void move(int slot, const Eigen::Vector3f& position_m);
 
   Winners nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m);
 
-  /// Tells the search what it found, so that its cells follow the spacing of nodes (only speed
-  /// depends on it). inside_of: per slot, 1 = in the suspected area.
-  void learn_spacing(const Graph& graph, const std::uint8_t* inside_of, const Winners& winners);
+  /// Tells the search one of the answers to a number of searches, so that its cells follow the
+  /// spacing of nodes (only speed depends on it).
+  void learn_spacing(const Graph& graph, const Winners& winners, int num_searches);
 
   struct Counts {
     std::int64_t searches = 0;
+    std::int64_t wide = 0;    ///< not answered by the block of cells alone
     std::int64_t linear = 0;  ///< answered by looking at every slot
   };
   const Counts& counts() const { return counts_; }
 
- private:
-  float fitting_side_m(int area) const;
-  void refit(const Graph& graph, const std::uint8_t* inside_of, int area);
-  void mark_inside(const Graph& graph, const std::uint8_t* inside_of);
+  // For the search in the nearest cells, compiled into the signal step.
+  CellGrid& grid() { return grid_; }
+  const CellGrid& grid() const { return grid_; }
+  void count() { ++counts_.searches; }
+  /// Whether nodes of the other level may be in the 2 x 2 x 2 cells of this one from these on, except
+  /// close to their border.
+  bool others_in_block(int level, int cx, int cy, int cz) const {
+    return others_[level].maybe_in_block(cx, cy, cz);
+  }
+  bool others_within(int level, const Eigen::Vector3f& point_m, float distance_m2) const;
+  /// The answer when the nearest cells could not prove theirs, which found a second node at this
+  /// distance (or none: infinite).
+  Winners nearest_two_wide(const Graph& graph, const Eigen::Vector3f& signal_m, float second_m2);
 
-  std::array<CellGrid, 2> grids_;  // outside, inside
-  Occupancy inside_nodes_;         // in parts of the outside grid's cells
-  std::array<float, 2> spacing_m2_{};
-  std::array<int, 2> until_check_{};
+ private:
+  bool list_ball(const Eigen::Vector3f& signal_m, float second_m2, struct CellList& list) const;
+  void mark(int slot);
+  float fitting_side_m(int level) const;
+  void mark_all(const Graph& graph);
+
+  CellGrid grid_;
+  // Where the nodes of the other level may be, in cubes as large as the cells of this one.
+  std::array<Occupancy, CellGrid::kNumLevels> others_;
+  std::array<float, CellGrid::kNumLevels> spacing_m2_{};
+  std::array<int, CellGrid::kNumLevels> until_check_{};
   int until_mark_ = 0;
   bool linear_only_ = false;
   Counts counts_;

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What signals do to the graph: the inner loop of everything. Compiled once per instruction set by
+// Highway, with the winner search in it; the best one of the machine is chosen at run time.
+#include "ddgng/growing.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ddgng/growing_signals.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+#include <hwy/highway.h>
+
+#include "ddgng/nearest_two-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace ddgng {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Index of a neighbour in a node's list, -1 = none.
+HWY_INLINE int IndexOf(const Graph::Links& links, int neighbour) {
+  const hn::CappedTag<std::uint16_t, 32> d;
+  const auto wanted = hn::Set(d, static_cast<std::uint16_t>(neighbour));
+  int index = -1;
+  for (int i = 0; i < 32; i += static_cast<int>(hn::Lanes(d))) {
+    const auto equal = hn::Eq(hn::Load(d, links.neighbour.data() + i), wanted);
+    const auto found = static_cast<int>(hn::FindFirstTrue(d, equal));
+    if (found >= 0) index = i + found;
+  }
+  return index;
+}
+
+/// Moves a node a part of the way to a target (x, y, z, 0).
+HWY_INLINE void Move(GrowingState& state, int slot, const float* target_m, float rate) {
+  if (HWY_UNLIKELY(state.search.linear_only())) {
+    state.graph.move_towards(slot, {target_m[0], target_m[1], target_m[2]}, rate);
+    return;
+  }
+  CellGrid& grid = state.search.grid();
+  CellGrid::Place& place = grid.places()[slot];
+  const hn::CappedTag<float, 4> d;
+  bool stays = true;
+  for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
+    const auto old = hn::Load(d, place.position_m.data() + i);
+    const auto way = hn::Sub(hn::Load(d, target_m + i), old);
+    const auto moved = hn::Add(old, hn::Mul(hn::Set(d, rate), way));
+    hn::Store(moved, d, place.position_m.data() + i);
+    const auto off = hn::Abs(hn::Sub(moved, hn::Load(d, place.center_m.data() + i)));
+    stays = stays && hn::AllTrue(d, hn::Le(off, hn::Load(d, place.reach_m.data() + i)));
+  }
+  const auto [x_m, y_m, z_m, zero] = place.position_m;
+  state.graph.set_position(slot, x_m, y_m, z_m);
+  if (HWY_UNLIKELY(!stays)) {
+    state.search.move(slot, {x_m, y_m, z_m});
+    return;
+  }
+  CellGrid::Cell& cell = grid.cells()[place.cell];
+  cell.x_m[place.lane] = x_m;
+  cell.y_m[place.lane] = y_m;
+  cell.z_m[place.lane] = z_m;
+}
+
+/// The edge of the two winners: made, or made young again.
+HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
+  Graph::Links& links = state.graph.links(s1);
+  const int k = IndexOf(links, s2);
+  if (HWY_UNLIKELY(k < 0)) {
+    state.counts.edges_dropped += state.graph.join(s1, s2);
+    return;
+  }
+  Graph::Links& others = state.graph.links(s2);
+  const std::uint16_t* const wins = state.graph.wins();
+  links.born[k] = others.born[IndexOf(others, s1)] = static_cast<std::uint16_t>(wins[s1] + wins[s2]);
+}
+
+HWY_INLINE Winners OneSignal(GrowingState& state, const Eigen::Vector3f& position_m) {
+  const GrowingParams& params = state.params;
+  HWY_ALIGN const float signal_m[4] = {position_m.x(), position_m.y(), position_m.z(), 0.0F};
+  const Winners winners = NearestTwo(state.search, state.graph, signal_m);
+  const int s1 = winners.first;
+  // The new edge is made after the others aged, so it starts at 0 and cannot be too old below.
+  state.graph.age_edges(s1);
+  Join(state, s1, winners.second);
+  state.error[s1] += state.error_decay.stored(winners.first_m2);
+  state.utility[s1] += state.decay_of(s1).stored(winners.second_m2 - winners.first_m2);
+  state.extremes.touch(s1);
+
+  Move(state, s1, signal_m, params.winner_rate);
+  const Graph::Links& links = state.graph.links(s1);
+  const std::uint16_t* const wins = state.graph.wins();
+  int oldest = 0;
+  for (int k = 0; k < links.degree; ++k) {
+    const int j = links.neighbour[k];
+    Move(state, j, signal_m, params.neighbour_rate);
+    oldest = std::max(oldest, static_cast<int>(static_cast<std::uint16_t>(wins[s1] + wins[j] - links.born[k])));
+  }
+  if (HWY_UNLIKELY(oldest > params.max_edge_age)) state.remove_old_edges(s1);
+
+  bool shrink_due = false;
+  for (Decay* decay : {&state.error_decay, &state.utility_decay[0], &state.utility_decay[1]}) {
+    decay->next_signal();
+    shrink_due = shrink_due || decay->shrink_due();
+  }
+  if (HWY_UNLIKELY(shrink_due)) state.shrink();
+  return winners;
+}
+
+void Signals(GrowingState& state, std::span<const Signal> signals, Winners* winners) {
+  for (const Signal& signal : signals) *winners++ = OneSignal(state, signal.position_m);
+  state.counts.signals += static_cast<std::int64_t>(signals.size());
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace ddgng
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace ddgng {
+
+HWY_EXPORT(Signals);
+
+void Growing::signals(std::span<const Signal> signals, Winners* winners) {
+  if (signals.empty()) return;
+  HWY_DYNAMIC_DISPATCH(Signals)(state_, signals, winners);
+  state_.search.learn_spacing(graph(), winners[signals.size() - 1], static_cast<int>(signals.size()));
+}
+
+}  // namespace ddgng
+#endif
