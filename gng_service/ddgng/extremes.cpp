@@ -86,6 +86,16 @@ void Extremes::refresh(const SlotValues& values) {
   touched_.clear();
 }
 
+void Extremes::find_bounds(const SlotValues& values) {
+  refresh(values);
+  const auto largest = [this](const std::vector<float>& of_blocks) {
+    return HWY_DYNAMIC_DISPATCH(LargestOf)(of_blocks.data(), of_blocks.data(), 1.0F, num_blocks_);
+  };
+  error_bound_ = std::max(largest(error_[0]), largest(error_[1]));
+  for (int area = 0; area < 2; ++area) utility_bound_[area] = -largest(negative_utility_[area]);
+  bounds_hold_ = true;
+}
+
 // Rounding keeps order, so the largest product of a block is the product of its largest value, and
 // the slot is found again by equality.
 Extremes::Found Extremes::largest_error(const SlotValues& values, float inside_weight) {

@@ -3,6 +3,7 @@
 // the extremes of blocks of 16 slots are kept and only touched blocks are looked at again.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -32,12 +33,25 @@ class Extremes {
 
   /// A value of this slot has changed. Every change must be told.
   void touch(int slot) {
-    const int block = slot / kBlock;
-    if (is_touched_[block] != 0) return;
-    is_touched_[block] = 1;
-    touched_.push_back(block);
+    bounds_hold_ = false;
+    mark(slot);
+  }
+  /// The same when both values have risen.
+  void touch_risen(int slot, float error) {
+    error_bound_ = std::max(error_bound_, error);
+    mark(slot);
   }
   void touch_all();
+
+  /// No error is above it and no utility below them (outside, inside): where these say that nothing
+  /// is useless, nobody need look for the extremes. Found anew by find_bounds().
+  struct Bounds {
+    float error;
+    float utility[2];
+  };
+  bool bounds_hold() const { return bounds_hold_; }
+  Bounds bounds() const { return {error_bound_, {utility_bound_[0], utility_bound_[1]}}; }
+  void find_bounds(const SlotValues& values);
 
   struct Found {
     int slot = -1;
@@ -50,6 +64,12 @@ class Extremes {
   Found least_utility(const SlotValues& values, float inside_scale);
 
  private:
+  void mark(int slot) {
+    const int block = slot / kBlock;
+    if (is_touched_[block] != 0) return;
+    is_touched_[block] = 1;
+    touched_.push_back(block);
+  }
   void refresh(const SlotValues& values);
 
   int num_blocks_;
@@ -58,6 +78,9 @@ class Extremes {
   std::vector<float> error_[2], negative_utility_[2];
   std::vector<std::uint8_t> is_touched_;
   std::vector<int> touched_;
+  bool bounds_hold_ = false;
+  float error_bound_ = 0.0F;
+  float utility_bound_[2] = {0.0F, 0.0F};
 };
 
 }  // namespace ddgng

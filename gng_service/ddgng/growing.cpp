@@ -56,15 +56,28 @@ int Growing::insert(Weighting weighting) {
 
 int Growing::remove_useless() {
   if (state_.graph.num_nodes() <= state_.params.min_utility_nodes) return -1;
+  if (state_.extremes.bounds_hold() && surely_all_useful()) return -1;
+  state_.extremes.find_bounds(values());
+  if (surely_all_useful()) return -1;
   // Both groups on the outside's scale.
   const auto inside_scale =
       static_cast<float>(state_.utility_decay[0].growth() / state_.utility_decay[1].growth());
   const float largest_error = state_.extremes.largest_error(values(), 1.0F).value;
   const int l = state_.extremes.least_utility(values(), inside_scale).slot;
-  if (state_.error_decay.value(largest_error) <= state_.params.utility_threshold * utility_m2(l)) return -1;
+  if (useful(largest_error, utility_m2(l))) return -1;
   state_.remove(l);
   ++state_.counts.removed_by_utility;
   return l;
+}
+
+bool Growing::useful(float stored_error, float utility_m2) const {
+  return state_.error_decay.value(stored_error) <= state_.params.utility_threshold * utility_m2;
+}
+
+bool Growing::surely_all_useful() const {
+  const Extremes::Bounds bounds = state_.extremes.bounds();
+  return useful(bounds.error, state_.utility_decay[0].value(bounds.utility[0])) &&
+         useful(bounds.error, state_.utility_decay[1].value(bounds.utility[1]));
 }
 
 float Growing::strength(int slot) const {

@@ -60,6 +60,8 @@ class Growing {
   SlotValues values() const {
     return {state_.error.data(), state_.utility.data(), state_.inside.data()};
   }
+  bool useful(float stored_error, float utility_m2) const;
+  bool surely_all_useful() const;
   int largest_error(Weighting weighting);
   float weighted_error(int slot, Weighting weighting) const;
 

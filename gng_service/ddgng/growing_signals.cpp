@@ -81,7 +81,7 @@ HWY_INLINE Winners OneSignal(GrowingState& state, const Eigen::Vector3f& positio
   Join(state, s1, winners.second);
   state.error[s1] += state.error_decay.stored(winners.first_m2);
   state.utility[s1] += state.decay_of(s1).stored(winners.second_m2 - winners.first_m2);
-  state.extremes.touch(s1);
+  state.extremes.touch_risen(s1, state.error[s1]);
 
   Move(state, s1, signal_m, params.winner_rate);
   const Graph::Links& links = state.graph.links(s1);

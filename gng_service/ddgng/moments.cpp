@@ -50,6 +50,13 @@ void Moments::add(int slot, int head, const Eigen::Vector3f& point_m, float dist
   sums.zz_m2 += z * z;
 }
 
+void Moments::add(std::span<const Signal> signals, const Winners* winners) {
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const Signal& signal = signals[i];
+    add(winners[i].first, signal.head, signal.position_m, winners[i].first_m2);
+  }
+}
+
 void Moments::append(int slot, int node, std::vector<Moment>& moments) const {
   for (int head = 0; head < kNumHeads; ++head) {
     const Sums& sums = sums_[slot][head];

@@ -29,12 +29,7 @@ class Moments {
   void add(int slot, int head, const Eigen::Vector3f& point_m, float distance_m2);
 
   /// The same for each signal and its winners.
-  void add(std::span<const Signal> signals, const Winners* winners) {
-    for (const Signal& signal : signals) {
-      add(winners->first, signal.head, signal.position_m, winners->first_m2);
-      ++winners;
-    }
-  }
+  void add(std::span<const Signal> signals, const Winners* winners);
 
   /// Appends the slot's moments in ascending order of head; node is the index to write into them.
   void append(int slot, int node, std::vector<Moment>& moments) const;

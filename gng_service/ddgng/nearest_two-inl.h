@@ -26,10 +26,21 @@ constexpr float kBorderSlack = CellGrid::kSlack + Occupancy::kSlack;  // of a si
 
 /// The 2 x 2 x 2 cells of one level round the cell corner that is nearest to a signal.
 struct Block {
-  int cx = 0, cy = 0, cz = 0;                    ///< the first of them
-  std::array<std::uint16_t, kBlockCells> cells;  ///< 0 = empty
-  bool empty = true;
-  float border_m2 = 0.0F;  ///< no other node of the level is nearer than this, squared
+  const CellGrid::Level* level;
+  int cx, cy, cz;        ///< the first of them
+  std::uint32_t entry;   ///< of the first
+  float border_m2;       ///< no other node of the level is nearer than this, squared
+
+  std::uint16_t cell(std::uint32_t i) const {
+    const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level->kPerY + (i >> 2) * level->kPerZ;
+    return level->table[(entry + off) & level->mask];
+  }
+  bool empty() const {
+    int any = 0;
+    HWY_UNROLL(8)
+    for (std::uint32_t i = 0; i < kBlockCells; ++i) any |= cell(i);
+    return any == 0;
+  }
 };
 
 /// signal_m: x, y, z, 0, aligned. A signal beyond the reach of exact cells proves nothing.
@@ -48,23 +59,10 @@ HWY_INLINE Block BlockAround(const CellGrid::Level& level, const float* signal_m
     addressable = addressable &&
                   hn::AllTrue(d, hn::Lt(hn::Abs(f), hn::Set(d, CellGrid::kMaxSides)));
   }
-  Block block{corner[0], corner[1], corner[2], {}, true, 0.0F};
-  if (HWY_UNLIKELY(!addressable)) return block;
-
-  const std::uint32_t base = level.entry(block.cx, block.cy, block.cz);
-  const std::uint16_t* const table = level.table.data();
-  int any = 0;
-  HWY_UNROLL(8)
-  for (std::uint32_t i = 0; i < kBlockCells; ++i) {
-    const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level.kPerY + (i >> 2) * level.kPerZ;
-    block.cells[i] = table[(base + off) & level.mask];
-    any |= block.cells[i];
-  }
-  block.empty = any == 0;
   const float inner = std::min(std::min(border[0], border[1]), border[2]) - kBorderSlack;
-  const float border_m = std::max(0.0F, inner) * level.side_m;
-  block.border_m2 = border_m * border_m;
-  return block;
+  const float border_m = addressable ? std::max(0.0F, inner) * level.side_m : 0.0F;
+  return {&level,    corner[0], corner[1], corner[2], level.entry(corner[0], corner[1], corner[2]),
+          border_m * border_m};
 }
 
 /// The lanes of all cells of a block that hold a value, a bit each; true: exactly one.
@@ -106,8 +104,8 @@ HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& bloc
   auto next = best;
   int goes_on = 0;
   HWY_UNROLL(8)
-  for (int c = 0; c < kBlockCells; ++c) {
-    const CellGrid::Cell& cell = cells[block.cells[c]];
+  for (std::uint32_t c = 0; c < kBlockCells; ++c) {
+    const CellGrid::Cell& cell = cells[block.cell(c)];
     goes_on |= cell.next;
     HWY_UNROLL(4)
     for (int i = 0; i < CellGrid::kLanes; i += num_lanes) {
@@ -131,7 +129,7 @@ HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& bloc
     return false;
   }
   const auto slot_at = [&](int lane) {
-    return cells[block.cells[lane / CellGrid::kLanes]].slot[lane % CellGrid::kLanes];
+    return cells[block.cell(lane / CellGrid::kLanes)].slot[lane % CellGrid::kLanes];
   };
   winners.first = slot_at(has_first.first());
   winners.second = slot_at(has_second.first());
@@ -146,10 +144,9 @@ HWY_INLINE Winners NearestTwo(WinnerSearch& search, const Graph& graph, const fl
   const Eigen::Vector3f point_m(signal_m[0], signal_m[1], signal_m[2]);
   if (HWY_LIKELY(!search.linear_only())) {
     const CellGrid& grid = search.grid();
-    Block block;
-    int level = 1;
-    if (grid.level(1).num_nodes > 0) block = BlockAround(grid.level(1), signal_m);
-    if (block.empty) {
+    int level = grid.level(1).num_nodes > 0 ? 1 : 0;
+    Block block = BlockAround(grid.level(level), signal_m);
+    if (level == 1 && block.empty()) {
       level = 0;
       block = BlockAround(grid.level(0), signal_m);
     }

@@ -34,12 +34,13 @@ class Sampler {
   std::span<const Signal> draw(const CloudView& cloud, std::span<const std::uint32_t> suspected);
 
  private:
-  void push(const CloudView& cloud, std::uint32_t index);
+  std::span<const Signal> fetch(const CloudView& cloud);
 
   std::uint64_t seed_;
   int num_uniform_;
   int num_attention_;
   base::Rng rng_;
+  std::vector<std::uint32_t> drawn_;  // indices into the cloud
   std::vector<Signal> signals_;
 };
 
