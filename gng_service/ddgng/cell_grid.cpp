@@ -15,7 +15,8 @@ constexpr float kReach = 1.002F;
 
 }  // namespace
 
-CellGrid::CellGrid(int num_slots) : cells_(num_slots + 1), places_(num_slots) {
+CellGrid::CellGrid(int num_slots)
+    : cells_(std::min(num_slots + 1, Graph::kNodeLimit + 1)), places_(num_slots) {
   // Few nodes share an entry by chance.
   constexpr int kEntriesPerNode = 8;
   while ((1 << table_bits_) < kEntriesPerNode * num_slots) ++table_bits_;
@@ -78,7 +79,9 @@ void CellGrid::put(int slot) {
   Level& level = levels_[place.level];
   const std::array<int, 3> c = set_reach(place);
   place.entry = level.entry(c[0], c[1], c[2]);
-  std::uint16_t* link = &level.table[place.entry];
+  std::uint16_t& start = level.table[place.entry];
+  start &= kIndex;
+  std::uint16_t* link = &start;
   while (*link != 0 && cells_[*link].used == 0xFFFF) link = &cells_[*link].next;
   if (*link == 0) *link = take_cell();
   Cell& cell = cells_[*link];
@@ -90,8 +93,13 @@ void CellGrid::put(int slot) {
   cell.slot[lane] = static_cast<std::uint16_t>(slot);
   cell.used = static_cast<std::uint16_t>(cell.used | 1 << lane);
   place.cell = *link;
+  mark_whether_it_goes_on(start);
   place.lane = static_cast<std::uint16_t>(lane);
   ++level.num_nodes;
+}
+
+void CellGrid::mark_whether_it_goes_on(std::uint16_t& start) const {
+  if (cells_[start].next != 0) start |= kGoesOn;
 }
 
 void CellGrid::take_out(int slot) {
@@ -105,10 +113,13 @@ void CellGrid::take_out(int slot) {
 }
 
 void CellGrid::release_cell(Level& level, std::uint32_t entry, std::uint16_t index) {
-  std::uint16_t* link = &level.table[entry];
+  std::uint16_t& start = level.table[entry];
+  start &= kIndex;
+  std::uint16_t* link = &start;
   while (*link != index) link = &cells_[*link].next;
   *link = cells_[index].next;
   cells_[index].next = 0;
+  mark_whether_it_goes_on(start);
   free_.push_back(index);
 }
 

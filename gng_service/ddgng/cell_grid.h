@@ -16,6 +16,8 @@ namespace ddgng {
 class CellGrid {
  public:
   static constexpr int kLanes = 16;
+  static constexpr std::uint16_t kIndex = 0x7FFF;
+  static constexpr std::uint16_t kGoesOn = 0x8000;
   static constexpr int kNumLevels = 2;  ///< outside and inside the suspected area
 
   /// Empty lanes lie at Graph::kFar_m. A cell with more nodes goes on in next (0 = ends here).
@@ -55,7 +57,8 @@ class CellGrid {
               static_cast<std::uint32_t>(cz) * kPerZ) &
              mask;
     }
-    /// The first cell at these cell coordinates; index 0 = no node there.
+    /// The first cell at these cell coordinates; index 0 = no node there; kGoesOn added = there is a
+    /// next cell.
     std::uint16_t first(int cx, int cy, int cz) const { return table[entry(cx, cy, cz)]; }
   };
   static constexpr int kMinTableBits = 9;
@@ -100,6 +103,7 @@ class CellGrid {
   std::array<int, 3> set_reach(Place& place) const;
   void put(int slot);
   void take_out(int slot);
+  void mark_whether_it_goes_on(std::uint16_t& start) const;
   std::uint16_t take_cell();
   void clear_lane(Cell& cell, int lane);
   void release_cell(Level& level, std::uint32_t entry, std::uint16_t index);

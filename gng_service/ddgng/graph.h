@@ -15,7 +15,7 @@ namespace ddgng {
 
 class Graph {
  public:
-  static constexpr int kNodeLimit = 32768;
+  static constexpr int kNodeLimit = 32767;
   static constexpr int kDegreeLimit = 31;
   static constexpr int kAgeLimit = 30000;
   static constexpr int kSlotBlock = 16;  ///< arrays over slots are padded to a multiple of this

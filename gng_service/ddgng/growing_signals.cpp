@@ -3,6 +3,9 @@
 // Highway, with the winner search in it; the best one of the machine is chosen at run time.
 #include "ddgng/growing.h"
 
+#include <algorithm>
+#include <cmath>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ddgng/growing_signals.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h
@@ -28,27 +31,54 @@ HWY_INLINE int IndexOf(const Graph::Links& links, int neighbour) {
   return index;
 }
 
+/// The search for the next signal runs ahead of the changes that this one makes, so that the two
+/// overlap in the processor. It still stands when it found none of the moved nodes and none of them
+/// has come as near as what it found.
+struct Ahead {
+  HWY_ALIGN float signal_m[4];
+  float radius_m = -1.0F;  ///< a little more than to its second winner; negative = no search
+  Winners winners;
+  bool disturbed = false;
+};
+
+HWY_INLINE void SearchAhead(GrowingState& state, const Eigen::Vector3f& signal_m, Ahead& ahead) {
+  constexpr float kMargin = 1.0001F;  // more than rounding
+  ahead.signal_m[0] = signal_m.x();
+  ahead.signal_m[1] = signal_m.y();
+  ahead.signal_m[2] = signal_m.z();
+  ahead.signal_m[3] = 0.0F;
+  ahead.winners = NearestTwo(state.search, state.graph, ahead.signal_m);
+  ahead.radius_m = kMargin * std::sqrt(ahead.winners.second_m2);
+  ahead.disturbed = false;
+}
+
 /// Moves a node a part of the way to a target (x, y, z, 0).
-HWY_INLINE void Move(GrowingState& state, int slot, const float* target_m, float rate) {
+HWY_INLINE void Move(GrowingState& state, int slot, const float* target_m, float rate,
+                     Ahead& ahead) {
   if (HWY_UNLIKELY(state.search.linear_only())) {
     state.graph.move_towards(slot, {target_m[0], target_m[1], target_m[2]}, rate);
+    ahead.disturbed = true;
     return;
   }
   CellGrid& grid = state.search.grid();
   CellGrid::Place& place = grid.places()[slot];
   const hn::CappedTag<float, 4> d;
-  bool stays = true;
+  bool in_reach = true;
+  bool near_next = true;
   for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
     const auto old = hn::Load(d, place.position_m.data() + i);
     const auto way = hn::Sub(hn::Load(d, target_m + i), old);
     const auto moved = hn::Add(old, hn::Mul(hn::Set(d, rate), way));
     hn::Store(moved, d, place.position_m.data() + i);
     const auto off = hn::Abs(hn::Sub(moved, hn::Load(d, place.center_m.data() + i)));
-    stays = stays && hn::AllTrue(d, hn::Le(off, hn::Load(d, place.reach_m.data() + i)));
+    in_reach = in_reach && hn::AllTrue(d, hn::Le(off, hn::Load(d, place.reach_m.data() + i)));
+    const auto to_next = hn::Abs(hn::Sub(moved, hn::Load(d, ahead.signal_m + i)));
+    near_next = near_next && hn::AllTrue(d, hn::Le(to_next, hn::Set(d, ahead.radius_m)));
   }
+  ahead.disturbed |= near_next;
   const auto [x_m, y_m, z_m, zero] = place.position_m;
   state.graph.set_position(slot, x_m, y_m, z_m);
-  if (HWY_UNLIKELY(!stays)) {
+  if (HWY_UNLIKELY(!in_reach)) {
     state.search.move(slot, {x_m, y_m, z_m});
     return;
   }
@@ -71,10 +101,10 @@ HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
   links.born[k] = others.born[IndexOf(others, s1)] = static_cast<std::uint16_t>(wins[s1] + wins[s2]);
 }
 
-HWY_INLINE Winners OneSignal(GrowingState& state, const Eigen::Vector3f& position_m) {
+/// What a signal does once its winners are known.
+HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners& winners,
+                      Ahead& ahead) {
   const GrowingParams& params = state.params;
-  HWY_ALIGN const float signal_m[4] = {position_m.x(), position_m.y(), position_m.z(), 0.0F};
-  const Winners winners = NearestTwo(state.search, state.graph, signal_m);
   const int s1 = winners.first;
   // The new edge is made after the others aged, so it starts at 0 and cannot be too old below.
   state.graph.age_edges(s1);
@@ -83,16 +113,23 @@ HWY_INLINE Winners OneSignal(GrowingState& state, const Eigen::Vector3f& positio
   state.utility[s1] += state.decay_of(s1).stored(winners.second_m2 - winners.first_m2);
   state.extremes.touch_risen(s1, state.error[s1]);
 
-  Move(state, s1, signal_m, params.winner_rate);
   const Graph::Links& links = state.graph.links(s1);
   const std::uint16_t* const wins = state.graph.wins();
+  ahead.disturbed |= s1 == ahead.winners.first || s1 == ahead.winners.second ||
+                     IndexOf(links, ahead.winners.first) >= 0 ||
+                     IndexOf(links, ahead.winners.second) >= 0;
+  Move(state, s1, signal_m, params.winner_rate, ahead);
   int oldest = 0;
   for (int k = 0; k < links.degree; ++k) {
     const int j = links.neighbour[k];
-    Move(state, j, signal_m, params.neighbour_rate);
-    oldest = std::max(oldest, static_cast<int>(static_cast<std::uint16_t>(wins[s1] + wins[j] - links.born[k])));
+    Move(state, j, signal_m, params.neighbour_rate, ahead);
+    const auto age = static_cast<std::uint16_t>(wins[s1] + wins[j] - links.born[k]);
+    oldest = std::max(oldest, static_cast<int>(age));
   }
-  if (HWY_UNLIKELY(oldest > params.max_edge_age)) state.remove_old_edges(s1);
+  if (HWY_UNLIKELY(oldest > params.max_edge_age)) {
+    state.remove_old_edges(s1);
+    ahead.disturbed = true;
+  }
 
   bool shrink_due = false;
   for (Decay* decay : {&state.error_decay, &state.utility_decay[0], &state.utility_decay[1]}) {
@@ -100,11 +137,20 @@ HWY_INLINE Winners OneSignal(GrowingState& state, const Eigen::Vector3f& positio
     shrink_due = shrink_due || decay->shrink_due();
   }
   if (HWY_UNLIKELY(shrink_due)) state.shrink();
-  return winners;
 }
 
 void Signals(GrowingState& state, std::span<const Signal> signals, Winners* winners) {
-  for (const Signal& signal : signals) *winners++ = OneSignal(state, signal.position_m);
+  Ahead ahead;
+  SearchAhead(state, signals[0].position_m, ahead);
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const Ahead now = ahead;
+    winners[i] = now.winners;
+    if (i + 1 < signals.size()) SearchAhead(state, signals[i + 1].position_m, ahead);
+    Learn(state, now.signal_m, now.winners, ahead);
+    if (HWY_UNLIKELY(ahead.disturbed) && i + 1 < signals.size()) {
+      SearchAhead(state, signals[i + 1].position_m, ahead);
+    }
+  }
   state.counts.signals += static_cast<std::int64_t>(signals.size());
 }
 

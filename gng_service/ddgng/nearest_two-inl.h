@@ -35,11 +35,12 @@ struct Block {
     const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level->kPerY + (i >> 2) * level->kPerZ;
     return level->table[(entry + off) & level->mask];
   }
-  bool empty() const {
+  /// 0 = all cells are empty; with CellGrid::kGoesOn, a cell has more nodes than lanes.
+  int any() const {
     int any = 0;
     HWY_UNROLL(8)
     for (std::uint32_t i = 0; i < kBlockCells; ++i) any |= cell(i);
-    return any == 0;
+    return any;
   }
 };
 
@@ -82,16 +83,14 @@ HWY_INLINE Marks LanesOf(D d, const float* m2, hn::Vec<D> value) {
   Marks marks;
   HWY_UNROLL(32)
   for (int i = 0; i < kBlockCells * CellGrid::kLanes; i += num_lanes) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, m2 + i), value), bytes);
-    const std::uint64_t bits = bytes[0] | (num_lanes > 8 ? bytes[1] << 8 : 0);
-    (i < 64 ? marks.low : marks.high) |= bits << (i % 64);
+    std::uint16_t bits = 0;  // at most 16 lanes; little-endian, as all of our machines
+    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, m2 + i), value), reinterpret_cast<std::uint8_t*>(&bits));
+    (i < 64 ? marks.low : marks.high) |= static_cast<std::uint64_t>(bits) << (i % 64);
   }
   return marks;
 }
 
-/// The nearest two nodes of a block. False: not told, because distances are equal or a cell goes on;
-/// then winners.second_m2 is still that of a second node, or huge.
+/// The nearest two nodes of a block of which no cell goes on. False: distances are equal.
 HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& block,
                                   const float* signal_m, Winners& winners) {
   const hn::CappedTag<float, CellGrid::kLanes> d;
@@ -102,11 +101,9 @@ HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& bloc
   HWY_ALIGN float m2[kBlockCells * CellGrid::kLanes];
   auto best = hn::Set(d, hwy::HighestValue<float>());
   auto next = best;
-  int goes_on = 0;
   HWY_UNROLL(8)
   for (std::uint32_t c = 0; c < kBlockCells; ++c) {
     const CellGrid::Cell& cell = cells[block.cell(c)];
-    goes_on |= cell.next;
     HWY_UNROLL(4)
     for (int i = 0; i < CellGrid::kLanes; i += num_lanes) {
       const auto dx = hn::Sub(hn::Load(d, cell.x_m.data() + i), x);
@@ -124,10 +121,7 @@ HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& bloc
   winners.second_m2 = hn::GetLane(second);
   const Marks has_first = LanesOf(d, m2, first);
   const Marks has_second = LanesOf(d, m2, second);
-  if (HWY_UNLIKELY(!has_first.single() || !has_second.single() || goes_on != 0)) {
-    if (!has_first.single()) winners.second_m2 = winners.first_m2;
-    return false;
-  }
+  if (HWY_UNLIKELY(!has_first.single() || !has_second.single())) return false;
   const auto slot_at = [&](int lane) {
     return cells[block.cell(lane / CellGrid::kLanes)].slot[lane % CellGrid::kLanes];
   };
@@ -146,12 +140,17 @@ HWY_INLINE Winners NearestTwo(WinnerSearch& search, const Graph& graph, const fl
     const CellGrid& grid = search.grid();
     int level = grid.level(1).num_nodes > 0 ? 1 : 0;
     Block block = BlockAround(grid.level(level), signal_m);
-    if (level == 1 && block.empty()) {
+    int any = block.any();
+    if (level == 1 && any == 0) {
       level = 0;
       block = BlockAround(grid.level(0), signal_m);
+      any = block.any();
     }
-    const bool told = NearestTwoOfBlock(grid.cells(), block, signal_m, winners);
-    if (HWY_LIKELY(told && winners.second_m2 < block.border_m2) &&
+    if (HWY_UNLIKELY((any & CellGrid::kGoesOn) != 0) ||
+        HWY_UNLIKELY(!NearestTwoOfBlock(grid.cells(), block, signal_m, winners))) {
+      winners = search.nearest_two_crowded(level, {block.cx, block.cy, block.cz}, point_m);
+    }
+    if (HWY_LIKELY(winners.second_m2 < block.border_m2) &&
         (HWY_LIKELY(!search.others_in_block(level, block.cx, block.cy, block.cz)) ||
          !search.others_within(level, point_m, winners.second_m2))) {
       return winners;

@@ -25,7 +25,7 @@ struct CellList {
 
   /// False: full.
   bool push(const CellGrid& grid, std::uint16_t index) {
-    for (; index != 0; index = grid.cells()[index].next) {
+    for (index &= CellGrid::kIndex; index != 0; index = grid.cells()[index].next) {
       if (num == kMax) return false;
       cells[num++] = &grid.cells()[index];
     }
@@ -234,6 +234,19 @@ bool WinnerSearch::others_within(int level, const Eigen::Vector3f& point_m,
 
 Winners WinnerSearch::nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m) {
   return HWY_DYNAMIC_DISPATCH(NearestTwoInGrid)(*this, graph, signal_m);
+}
+
+Winners WinnerSearch::nearest_two_crowded(int level, const std::array<int, 3>& c,
+                                          const Eigen::Vector3f& signal_m) {
+  Winners none;
+  none.second_m2 = hwy::HighestValue<float>();
+  CellList list;
+  for (int i = 0; i < 8; ++i) {
+    const std::uint16_t first =
+        grid_.level(level).first(c[0] + (i & 1), c[1] + (i >> 1 & 1), c[2] + (i >> 2));
+    if (!list.push(grid_, first)) return none;
+  }
+  return list.num > 0 ? HWY_DYNAMIC_DISPATCH(NearestTwoInCells)(list, signal_m) : none;
 }
 
 Winners WinnerSearch::nearest_two_wide(const Graph& graph, const Eigen::Vector3f& signal_m,

@@ -65,6 +65,9 @@ class WinnerSearch {
     return others_[level].maybe_in_block(cx, cy, cz);
   }
   bool others_within(int level, const Eigen::Vector3f& point_m, float distance_m2) const;
+  /// The nearest two nodes in 2 x 2 x 2 cells when these hold many or at equal distances.
+  /// second_m2 is huge when there are fewer, or too many to list.
+  Winners nearest_two_crowded(int level, const std::array<int, 3>& c, const Eigen::Vector3f& signal_m);
   /// The answer when the nearest cells could not prove theirs, which found a second node at this
   /// distance (or none: infinite).
   Winners nearest_two_wide(const Graph& graph, const Eigen::Vector3f& signal_m, float second_m2);
