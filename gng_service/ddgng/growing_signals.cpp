@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ddgng/growing_signals.cpp"
@@ -37,18 +38,22 @@ HWY_INLINE int IndexOf(const Graph::Links& links, int neighbour) {
 struct Ahead {
   HWY_ALIGN float signal_m[4];
   float radius_m = -1.0F;  ///< a little more than to its second winner; negative = no search
-  Winners winners;
   bool disturbed = false;
 };
 
-HWY_INLINE void SearchAhead(GrowingState& state, const Eigen::Vector3f& signal_m, Ahead& ahead) {
+HWY_INLINE void SearchAhead(GrowingState& state, const Signal& signal, Ahead& ahead,
+                            Winners& winners) {
   constexpr float kMargin = 1.0001F;  // more than rounding
-  ahead.signal_m[0] = signal_m.x();
-  ahead.signal_m[1] = signal_m.y();
-  ahead.signal_m[2] = signal_m.z();
-  ahead.signal_m[3] = 0.0F;
-  ahead.winners = NearestTwo(state.search, state.graph, ahead.signal_m);
-  ahead.radius_m = kMargin * std::sqrt(ahead.winners.second_m2);
+  // As a whole: a vector read from where single elements were just written would wait for them.
+  static_assert(offsetof(Signal, position_m) == 0 && sizeof(Signal) == 4 * sizeof(float));
+  const hn::CappedTag<float, 4> d;
+  for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
+    const auto* const from = reinterpret_cast<const float*>(&signal) + i;
+    const auto coordinates = hn::FirstN(d, static_cast<std::size_t>(std::max(0, 3 - i)));
+    hn::Store(hn::IfThenElseZero(coordinates, hn::LoadU(d, from)), d, ahead.signal_m + i);
+  }
+  winners = NearestTwo(state.search, state.graph, ahead.signal_m);
+  ahead.radius_m = kMargin * std::sqrt(winners.second_m2);
   ahead.disturbed = false;
 }
 
@@ -103,7 +108,7 @@ HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
 
 /// What a signal does once its winners are known.
 HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners& winners,
-                      Ahead& ahead) {
+                      const Winners& next_winners, Ahead& ahead) {
   const GrowingParams& params = state.params;
   const int s1 = winners.first;
   // The new edge is made after the others aged, so it starts at 0 and cannot be too old below.
@@ -115,9 +120,9 @@ HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners&
 
   const Graph::Links& links = state.graph.links(s1);
   const std::uint16_t* const wins = state.graph.wins();
-  ahead.disturbed |= s1 == ahead.winners.first || s1 == ahead.winners.second ||
-                     IndexOf(links, ahead.winners.first) >= 0 ||
-                     IndexOf(links, ahead.winners.second) >= 0;
+  ahead.disturbed |= s1 == next_winners.first || s1 == next_winners.second ||
+                     IndexOf(links, next_winners.first) >= 0 ||
+                     IndexOf(links, next_winners.second) >= 0;
   Move(state, s1, signal_m, params.winner_rate, ahead);
   int oldest = 0;
   for (int k = 0; k < links.degree; ++k) {
@@ -140,15 +145,17 @@ HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners&
 }
 
 void Signals(GrowingState& state, std::span<const Signal> signals, Winners* winners) {
-  Ahead ahead;
-  SearchAhead(state, signals[0].position_m, ahead);
-  for (std::size_t i = 0; i < signals.size(); ++i) {
-    const Ahead now = ahead;
-    winners[i] = now.winners;
-    if (i + 1 < signals.size()) SearchAhead(state, signals[i + 1].position_m, ahead);
-    Learn(state, now.signal_m, now.winners, ahead);
-    if (HWY_UNLIKELY(ahead.disturbed) && i + 1 < signals.size()) {
-      SearchAhead(state, signals[i + 1].position_m, ahead);
+  const std::size_t last = signals.size() - 1;
+  Ahead searches[2];  // of this signal and of the next, in turns: copies would cost time
+  SearchAhead(state, signals[0], searches[0], winners[0]);
+  for (std::size_t i = 0; i <= last; ++i) {
+    Ahead& now = searches[i % 2];
+    Ahead& next = searches[(i + 1) % 2];
+    const std::size_t next_i = std::min(i + 1, last);
+    if (i < last) SearchAhead(state, signals[next_i], next, winners[next_i]);
+    Learn(state, now.signal_m, winners[i], winners[next_i], next);
+    if (HWY_UNLIKELY(next.disturbed) && i < last) {
+      SearchAhead(state, signals[next_i], next, winners[next_i]);
     }
   }
   state.counts.signals += static_cast<std::int64_t>(signals.size());
