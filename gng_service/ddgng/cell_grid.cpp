@@ -56,7 +56,8 @@ std::uint16_t CellGrid::take_cell() {
   return index;
 }
 
-// Reach: what its cell and the finer grid's cell have in common. Returns the coordinates of its cell.
+// Reach: what its cell and the finer grid's cell have in common. Returns the coordinates of its
+// cell.
 std::array<int, 3> CellGrid::set_reach(Place& place) const {
   const Level& own = levels_[place.level];
   const Level& finer = levels_[0].side_m < levels_[1].side_m ? levels_[0] : levels_[1];

@@ -29,7 +29,8 @@ class CellGrid {
   };
 
   /// Where a node is. Nobody need be told while it stays within reach of a centre on every axis:
-  /// then it is still in its cell, and in the same cell of the finer grid. The fourth elements are 0.
+  /// then it is still in its cell, and in the same cell of the finer grid. The fourth elements are
+  /// 0.
   struct alignas(64) Place {
     std::array<float, 4> position_m{};
     std::array<float, 4> center_m{};
@@ -57,8 +58,8 @@ class CellGrid {
               static_cast<std::uint32_t>(cz) * kPerZ) &
              mask;
     }
-    /// The first cell at these cell coordinates; index 0 = no node there; kGoesOn added = there is a
-    /// next cell.
+    /// The first cell at these cell coordinates; index 0 = no node there; kGoesOn added = there is
+    /// a next cell.
     std::uint16_t first(int cx, int cy, int cz) const { return table[entry(cx, cy, cz)]; }
   };
   static constexpr int kMinTableBits = 9;

@@ -55,8 +55,8 @@ class Graph {
   void remove_node(int slot);
 
   /// The edges of one node. The age is not stored but follows from the two ends' wins, so that
-  /// ageing costs one increment: age = wins[a] + wins[b] - born, in 16 bits; max_edge_age keeps true
-  /// ages far below the wrap.
+  /// ageing costs one increment: age = wins[a] + wins[b] - born, in 16 bits; max_edge_age keeps
+  /// true ages far below the wrap.
   struct alignas(64) Links {
     std::array<std::uint16_t, kDegreeLimit + 1> neighbour;  ///< kNobody from degree on
     std::array<std::uint16_t, kDegreeLimit> born{};

@@ -45,8 +45,9 @@ int Growing::insert(Weighting weighting) {
     state_.extremes.touch(parent);
   }
   const int r =
-      state_.place(0.5F * (state_.graph.position_m(u) + state_.graph.position_m(f)), 0.5F * (state_.error[u] + state_.error[f]),
-            state_.utility_decay[0].stored(0.5F * (utility_m2(u) + utility_m2(f))));
+      state_.place(0.5F * (state_.graph.position_m(u) + state_.graph.position_m(f)),
+                   0.5F * (state_.error[u] + state_.error[f]),
+                   state_.utility_decay[0].stored(0.5F * (utility_m2(u) + utility_m2(f))));
   state_.graph.separate(u, f);
   state_.graph.join(u, r);
   state_.graph.join(f, r);

@@ -26,8 +26,9 @@ class Growing {
   void start(const Eigen::Vector3f& h1_m, const Eigen::Vector3f& h2_m);
   bool started() const { return graph().num_nodes() >= 2; }
 
-  /// Signals one after the other, each: winners, edge, error and utility, move, ageing, decay. Writes
-  /// the winners of each; they may have been removed since. Needs started(). growing_signals.cpp
+  /// Signals one after the other, each: winners, edge, error and utility, move, ageing, decay.
+  /// Writes the winners of each; they may have been removed since. Needs started().
+  /// growing_signals.cpp
   void signals(std::span<const Signal> signals, Winners* winners);
 
   enum class Weighting { kError, kErrorAndStrength };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What signals do to the graph: the inner loop of everything. Compiled once per instruction set by
 // Highway, with the winner search in it; the best one of the machine is chosen at run time.
-#include "ddgng/growing.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "ddgng/growing.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ddgng/growing_signals.cpp"
@@ -103,7 +103,8 @@ HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
   }
   Graph::Links& others = state.graph.links(s2);
   const std::uint16_t* const wins = state.graph.wins();
-  links.born[k] = others.born[IndexOf(others, s1)] = static_cast<std::uint16_t>(wins[s1] + wins[s2]);
+  links.born[k] = others.born[IndexOf(others, s1)] =
+      static_cast<std::uint16_t>(wins[s1] + wins[s2]);
 }
 
 /// What a signal does once its winners are known.
@@ -173,7 +174,8 @@ HWY_EXPORT(Signals);
 void Growing::signals(std::span<const Signal> signals, Winners* winners) {
   if (signals.empty()) return;
   HWY_DYNAMIC_DISPATCH(Signals)(state_, signals, winners);
-  state_.search.learn_spacing(graph(), winners[signals.size() - 1], static_cast<int>(signals.size()));
+  state_.search.learn_spacing(graph(), winners[signals.size() - 1],
+                              static_cast<int>(signals.size()));
 }
 
 }  // namespace ddgng

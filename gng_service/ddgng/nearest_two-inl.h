@@ -8,11 +8,11 @@
 #define DDGNG_NEAREST_TWO_INL_H
 #endif
 
-#include <hwy/highway.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
+
+#include <hwy/highway.h>
 
 #include "ddgng/winner_search.h"
 
@@ -27,9 +27,9 @@ constexpr float kBorderSlack = CellGrid::kSlack + Occupancy::kSlack;  // of a si
 /// The 2 x 2 x 2 cells of one level round the cell corner that is nearest to a signal.
 struct Block {
   const CellGrid::Level* level;
-  int cx, cy, cz;        ///< the first of them
-  std::uint32_t entry;   ///< of the first
-  float border_m2;       ///< no other node of the level is nearer than this, squared
+  int cx, cy, cz;       ///< the first of them
+  std::uint32_t entry;  ///< of the first
+  float border_m2;      ///< no other node of the level is nearer than this, squared
 
   std::uint16_t cell(std::uint32_t i) const {
     const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level->kPerY + (i >> 2) * level->kPerZ;
@@ -57,12 +57,16 @@ HWY_INLINE Block BlockAround(const CellGrid::Level& level, const float* signal_m
     const auto u = hn::Sub(f, low);
     hn::Store(hn::ConvertTo(di, low), di, corner + i);
     hn::Store(hn::Min(u, hn::Sub(hn::Set(d, 2.0F), u)), d, border + i);
-    addressable = addressable &&
-                  hn::AllTrue(d, hn::Lt(hn::Abs(f), hn::Set(d, CellGrid::kMaxSides)));
+    addressable =
+        addressable && hn::AllTrue(d, hn::Lt(hn::Abs(f), hn::Set(d, CellGrid::kMaxSides)));
   }
   const float inner = std::min(std::min(border[0], border[1]), border[2]) - kBorderSlack;
   const float border_m = addressable ? std::max(0.0F, inner) * level.side_m : 0.0F;
-  return {&level,    corner[0], corner[1], corner[2], level.entry(corner[0], corner[1], corner[2]),
+  return {&level,
+          corner[0],
+          corner[1],
+          corner[2],
+          level.entry(corner[0], corner[1], corner[2]),
           border_m * border_m};
 }
 
@@ -74,7 +78,9 @@ struct Marks {
     return low != 0 ? static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(low))
                     : 64 + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(high));
   }
-  bool single() const { return (low == 0) != (high == 0) && ((low & (low - 1)) | (high & (high - 1))) == 0; }
+  bool single() const {
+    return (low == 0) != (high == 0) && ((low & (low - 1)) | (high & (high - 1))) == 0;
+  }
 };
 
 template <class D>
@@ -84,7 +90,8 @@ HWY_INLINE Marks LanesOf(D d, const float* m2, hn::Vec<D> value) {
   HWY_UNROLL(32)
   for (int i = 0; i < kBlockCells * CellGrid::kLanes; i += num_lanes) {
     std::uint16_t bits = 0;  // at most 16 lanes; little-endian, as all of our machines
-    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, m2 + i), value), reinterpret_cast<std::uint8_t*>(&bits));
+    hn::StoreMaskBits(d, hn::Eq(hn::Load(d, m2 + i), value),
+                      reinterpret_cast<std::uint8_t*>(&bits));
     (i < 64 ? marks.low : marks.high) |= static_cast<std::uint64_t>(bits) << (i % 64);
   }
   return marks;

@@ -40,7 +40,7 @@ std::string check(const GrowingParams& p) {
       {in(p.attention_signals, 0, 1000000), "attention_signals must be 0..1000000"},
       {p.insertion_interval >= 1, "insertion_interval must be >= 1"},
       {p.plain_insertion_every >= 1, "plain_insertion_every must be >= 1"},
-      {in(p.max_nodes, 2, Graph::kNodeLimit), "max_nodes must be 2..32768"},
+      {in(p.max_nodes, 2, Graph::kNodeLimit), "max_nodes must be 2..32767"},
       {p.max_plane_nodes >= 2, "max_plane_nodes must be >= 2"},
       {in(p.max_degree, 2, Graph::kDegreeLimit), "max_degree must be 2..31"},
       {in(p.boot_signals, 0, 1000000), "boot_signals must be 0..1000000"},

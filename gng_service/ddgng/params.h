@@ -21,7 +21,7 @@ struct GrowingParams {
                                   ///< (measured)
 
   // Bounds.
-  int max_nodes = 1000;       ///< 2..32768 (paper's program)
+  int max_nodes = 1000;       ///< 2..32767 (paper's program)
   int max_plane_nodes = 200;  ///< no insertion by error alone from this many nodes outside the
                               ///< suspected area on, >= 2; max_nodes = no bound (measured)
   int max_degree = 24;        ///< edges of one node, 2..kDegreeLimit; the oldest gives way (ours)

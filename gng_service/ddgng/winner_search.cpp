@@ -184,6 +184,7 @@ HWY_EXPORT(NearestTwoInGrid);
 // Cells this many RMS second distances wide: few nodes per block of cells, few wide searches.
 constexpr float kSidePerSpacing = 3.0F;
 constexpr float kMinSide_m = 1e-3F;
+constexpr float kPart = 0.25F;
 // A wide search looks at no more entries of the table than one for so many nodes.
 constexpr int kNodesPerEntry = 8;
 
@@ -194,13 +195,16 @@ Winners nearest_two_linear(const Graph& graph, const Eigen::Vector3f& signal_m) 
 }
 
 WinnerSearch::WinnerSearch(int num_slots)
-    : grid_(num_slots), others_{Occupancy(num_slots), Occupancy(num_slots)} {
+    : grid_(num_slots),
+      others_{Occupancy(num_slots), Occupancy(num_slots)},
+      inside_parts_(num_slots) {
   clear();
 }
 
 void WinnerSearch::clear() {
   grid_.clear();
   for (Occupancy& others : others_) others.clear(1.0F);
+  inside_parts_.clear(kPart);
   spacing_m2_ = {};
   until_check_ = {16, 16};
   until_mark_ = 0;
@@ -223,13 +227,17 @@ void WinnerSearch::move(int slot, const Eigen::Vector3f& position_m) {
 
 void WinnerSearch::mark(int slot) {
   const CellGrid::Place& place = grid_.place(slot);
-  others_[1 - place.level].mark(Eigen::Vector3f(place.center_m.data()),
-                                Eigen::Vector3f(place.reach_m.data()));
+  const Eigen::Vector3f center_m(place.center_m.data());
+  const Eigen::Vector3f reach_m(place.reach_m.data());
+  others_[1 - place.level].mark(center_m, reach_m);
+  if (place.level == 1) inside_parts_.mark(center_m, reach_m);
 }
 
 bool WinnerSearch::others_within(int level, const Eigen::Vector3f& point_m,
                                  float distance_m2) const {
-  return others_[level].maybe_within(point_m, std::sqrt(distance_m2));
+  const float distance_m = std::sqrt(distance_m2);
+  return level == 0 ? inside_parts_.maybe_within(point_m, distance_m)
+                    : others_[1].maybe_within(point_m, distance_m);
 }
 
 Winners WinnerSearch::nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m) {
@@ -272,7 +280,8 @@ bool WinnerSearch::list_ball(const Eigen::Vector3f& signal_m, float second_m2,
     const Eigen::Vector3f f = signal_m * level.per_side;
     if (!(f.cwiseAbs().maxCoeff() + sides < CellGrid::kMaxSides)) return false;  // also NaN
     if (level.num_nodes == 0) continue;
-    if (!others_[1 - index].maybe_within(signal_m, radius_m)) continue;
+    if (index == 1 && !inside_parts_.maybe_within(signal_m, radius_m)) continue;
+    if (index == 0 && !others_[1].maybe_within(signal_m, radius_m)) continue;
     const float reach = sides + CellGrid::kSlack;
     std::array<int, 3> low{};
     std::array<int, 3> high{};
@@ -322,6 +331,7 @@ void WinnerSearch::mark_all(const Graph& graph) {
   for (int level = 0; level < CellGrid::kNumLevels; ++level) {
     others_[level].clear(grid_.level(level).side_m);
   }
+  inside_parts_.clear(kPart * grid_.level(0).side_m);
   for (int slot = 0; slot < graph.num_slots(); ++slot) {
     if (graph.alive(slot)) mark(slot);
   }

@@ -26,9 +26,9 @@ struct Winners {
 Winners nearest_two_linear(const Graph& graph, const Eigen::Vector3f& signal_m);
 
 /// The same answer from the few cells round the signal: first from a block of eight
-/// (nearest_two-inl.h); where that cannot prove its answer, from all cells that a ball of the second
-/// distance touches; where those are too many, from all slots. Must be told of every change of the
-/// graph.
+/// (nearest_two-inl.h); where that cannot prove its answer, from all cells that a ball of the
+/// second distance touches; where those are too many, from all slots. Must be told of every change
+/// of the graph.
 class WinnerSearch {
  public:
   explicit WinnerSearch(int num_slots);
@@ -59,15 +59,16 @@ class WinnerSearch {
   CellGrid& grid() { return grid_; }
   const CellGrid& grid() const { return grid_; }
   void count() { ++counts_.searches; }
-  /// Whether nodes of the other level may be in the 2 x 2 x 2 cells of this one from these on, except
-  /// close to their border.
+  /// Whether nodes of the other level may be in the 2 x 2 x 2 cells of this one from these on,
+  /// except close to their border.
   bool others_in_block(int level, int cx, int cy, int cz) const {
     return others_[level].maybe_in_block(cx, cy, cz);
   }
   bool others_within(int level, const Eigen::Vector3f& point_m, float distance_m2) const;
   /// The nearest two nodes in 2 x 2 x 2 cells when these hold many or at equal distances.
   /// second_m2 is huge when there are fewer, or too many to list.
-  Winners nearest_two_crowded(int level, const std::array<int, 3>& c, const Eigen::Vector3f& signal_m);
+  Winners nearest_two_crowded(int level, const std::array<int, 3>& c,
+                              const Eigen::Vector3f& signal_m);
   /// The answer when the nearest cells could not prove theirs, which found a second node at this
   /// distance (or none: infinite).
   Winners nearest_two_wide(const Graph& graph, const Eigen::Vector3f& signal_m, float second_m2);
@@ -81,6 +82,7 @@ class WinnerSearch {
   CellGrid grid_;
   // Where the nodes of the other level may be, in cubes as large as the cells of this one.
   std::array<Occupancy, CellGrid::kNumLevels> others_;
+  Occupancy inside_parts_;  // the nodes inside, in cubes of a quarter of the outside's cells
   std::array<float, CellGrid::kNumLevels> spacing_m2_{};
   std::array<int, CellGrid::kNumLevels> until_check_{};
   int until_mark_ = 0;

@@ -40,7 +40,9 @@ class Pair {
   /// False when the reference decided by less than float can tell: the two may part from here.
   bool step(int i) {
     const Eigen::Vector3f v = random_point(run_.shape, rng_);
-    growing_.signal(v);
+    const Signal signal{v, 0};
+    Winners winners;
+    growing_.signals({&signal, 1}, &winners);
     reference_.signal(v);
     int removed = -1;
     int reference_removed = -1;

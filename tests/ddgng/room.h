@@ -45,8 +45,14 @@ class RoomBuilder {
   /// 40 % floor, 1/3 wall, the rest half rails (r = 20 mm), half rungs (r = 15 mm).
   Room build(int num_points, bool with_ladder = true) {
     const auto share = [num_points](double part) { return static_cast<int>(part * num_points); };
-    for (int i = 0; i < share(6.0 / 15); ++i) add(u() * 4 - 1.8, u() * 4 - 2, 0.0);
-    for (int i = 0; i < share(5.0 / 15); ++i) add(2.2, u() * 4 - 2, u() * 2.5);
+    for (int i = 0; i < share(6.0 / 15); ++i) {  // one draw per line: compilers differ in order
+      const double y = u() * 4 - 2;
+      add(u() * 4 - 1.8, y, 0.0);
+    }
+    for (int i = 0; i < share(5.0 / 15); ++i) {
+      const double z = u() * 2.5;
+      add(2.2, u() * 4 - 2, z);
+    }
     for (int i = 0; with_ladder && i < share(2.0 / 15); ++i) {
       const auto [c, s] = circle();
       const double y = rng_.below(2) == 0 ? -kRailY_m : kRailY_m;

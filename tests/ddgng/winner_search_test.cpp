@@ -102,19 +102,19 @@ TEST_P(WinnerSearchTest, CellsEqualBruteForce) {
         inside[added] = v.x() > 1.0F ? 1 : 0;
         search.add(added, inside[added] != 0, v);
       } else if (i % 10 == 0 && graph.num_nodes() > 2) {
-        search.remove(slot, inside[slot] != 0);
+        search.remove(slot);
         inside[slot] = 0;
         graph.remove_node(slot);
       } else {
         graph.move_towards(slot, v, 0.3F);
-        search.move(slot, inside[slot] != 0, graph.position_m(slot));
+        search.move(slot, graph.position_m(slot));
       }
       if (graph.num_nodes() < 2) continue;
       const Eigen::Vector3f query = random_point(shape, rng);
       const Winners winners = search.nearest_two(graph, query);
       expect_equal(brute_force(graph, query), winners);
       if (HasFatalFailure()) return;
-      search.learn_spacing(graph, inside.data(), winners);
+      search.learn_spacing(graph, winners, 1);
     }
     if (shape == Shape::kUniform) {
       EXPECT_LT(search.counts().linear, search.counts().searches / 2);
