@@ -8,8 +8,7 @@
 namespace robot_in_a_box {
 namespace {
 
-constexpr std::int64_t kEpoch_us = 1'700'000'000'000'000;  ///< some day, for the wall clock
-constexpr std::int64_t kDelay_us = 20'000;                 ///< from measurement to message
+constexpr std::int64_t kDelay_us = 20'000;  ///< from measurement to message
 constexpr float kVariance_m2 = 4e-6F;
 
 Eigen::Vector3d within(double limit_m, base::Rng& rng) {

@@ -43,6 +43,10 @@ class PerceivedLadder {
   void update(std::int64_t now_us, const simulator::RobotPlant& plant,
               const Eigen::Isometry3d& T_odom_body);
 
+  /// Virtual time 0 for the wall clock: some day.
+  static constexpr std::int64_t kEpoch_us = 1'700'000'000'000'000;
+  /// The last one, as it was handed over.
+  const ladder_msgs::ladder_t& message() const { return message_; }
   climb::LadderView view() const { return newest_.view(); }
   std::int64_t received_us() const { return newest_.received_us; }
   std::int64_t num_refused() const { return inbox_.num_refused(); }

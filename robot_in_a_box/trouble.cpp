@@ -13,8 +13,8 @@ std::vector<simulator::Fault> script(std::uint64_t seed, const TroubleParams& pa
                                      const ClimbBox& box) {
   base::Rng rng(seed, 3);
   simulator::RandomFaultParams random;
-  random.num_faults =
-      1 + static_cast<int>(rng.below(static_cast<std::uint32_t>(params.max_faults)));
+  const auto max_faults = static_cast<std::uint32_t>(params.max_faults);
+  random.num_faults = max_faults == 0 ? 0 : 1 + static_cast<int>(rng.below(max_faults));
   random.from_us = box.now_us();
   random.until_us = box.now_us() + params.until_us;
   random.num_rungs = box.plant().world().num_rungs();

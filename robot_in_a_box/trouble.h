@@ -18,7 +18,7 @@ using Tell = std::function<void(const std::string& line)>;
 
 struct TroubleParams {
   std::int64_t until_us = 4'000'000;  ///< from now on: faults of the plant begin before
-  int max_faults = 4;                 ///< of the plant
+  int max_faults = 4;                 ///< of the plant, at least one; 0 = none
   std::uint32_t order_every = 60;     ///< cycles between orders at random, on average; 0 = none
   std::uint32_t begin_every = 150;    ///< cycles between other troubles, on average
 };
