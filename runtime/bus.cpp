@@ -38,7 +38,8 @@ std::shared_ptr<lcm_t> open_lcm(const std::string& url) {
       fix =
           "most likely there is no route for multicast; on the robot and on a machine without a "
           "network run\n"
-          "    sudo ip link set lo up && sudo ip route add 239.255.76.67/32 dev lo";
+          "    sudo ip link set lo up && sudo ip route replace 239.255.76.67/32 dev lo src "
+          "127.0.0.1";
     }
     throw BusError("LCM cannot open " + url + ": " + fix);
   }
@@ -87,7 +88,11 @@ Bus::~Bus() {
 void Bus::attach(Input& input) {
   lcm_subscription_t* subscription =
       lcm_subscribe(connection_.get(), input.channel_name, &Bus::on_message, &input);
-  CHECK(subscription != nullptr, "LCM accepts a subscription");
+  if (subscription == nullptr) {
+    throw BusError(
+        "LCM sends but does not hear itself: a firewall or an address filter drops multicast, or "
+        "its route has another source address than lo's; run ladder-doctor --only route");
+  }
   lcm_subscription_set_queue_capacity(subscription, kQueueCapacity);
   subscriptions_.push_back(subscription);
 }

@@ -79,7 +79,7 @@ TEST_P(EachService, MissingRouteNamesTheFix) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root for a network namespace";
   ChildProcess child("unshare", {"-n", program(), "--url", url()});
   EXPECT_EQ(child.wait(15s), 3);
-  EXPECT_THAT(child.output(), HasSubstr("ip route add 239.255.76.67/32 dev lo"));
+  EXPECT_THAT(child.output(), HasSubstr("ip route replace 239.255.76.67/32 dev lo src 127.0.0.1"));
 }
 
 // A socket buffer that would lose clouds is said at the start with the exact fix; the service runs

@@ -25,7 +25,7 @@ from ladder_scripts.doctor.finding import FAULT, Report  # noqa: E402
 
 GROUP, PORT = "239.255.76.67", 7667
 UNSHARE = ["unshare", "--net"] if os.geteuid() == 0 else ["unshare", "--map-root-user", "--net"]
-LOOPBACK = "ip link set lo up; ip route add 239.255.76.67/32 dev lo; "
+LOOPBACK = "ip link set lo up; ip route add 239.255.76.67/32 dev lo src 127.0.0.1; "
 
 
 def can_unshare():
@@ -86,7 +86,9 @@ class Network(unittest.TestCase):
         findings, code = doctor("--only route", before=cable)
         self.assertEqual(code, 1)
         self.assertIn("goes through cable, not lo", findings[0]["what"])
-        self.assertEqual(doctor("--only route", before=cable + "ip route replace 239.255.76.67/32 dev lo; ")[1], 0)
+        unsourced, code = doctor("--only route", before=cable + "ip route replace 239.255.76.67/32 dev lo; ")
+        self.assertEqual((code, "from the address 10.9.8.7" in unsourced[0]["what"]), (1, True), "pinned, but sent from the cable's address")
+        self.assertEqual(doctor("--only route", before=cable + "ip route replace 239.255.76.67/32 dev lo src 127.0.0.1; ")[1], 0)
         self.assertEqual(doctor("--only route --interface cable", before=cable)[1], 0)
 
     def test_full_socket(self):

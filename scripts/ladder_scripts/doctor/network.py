@@ -24,15 +24,19 @@ def check_buffers(report, proc=pathlib.Path("/proc")):
 
 def check_route(report, group, interface):
     """The group must leave through `interface`, which is there whatever happens to cables: lo, unless two hosts share the work."""
-    pin = f"sudo ip link set {interface} up && sudo ip route replace {group}/32 dev {interface}"
+    pin = f"sudo ip link set {interface} up && sudo ip route replace {group}/32 dev {interface}" + (" src 127.0.0.1" if interface == "lo" else "")
     got = subprocess.run(["ip", "-json", "route", "get", group], capture_output=True, text=True, check=False)
     try:
-        device = json.loads(got.stdout)[0]["dev"]
+        route = json.loads(got.stdout)[0]
+        device, source = route["dev"], route.get("prefsrc", "0.0.0.0")
     except (ValueError, LookupError):
         report.fault(f"no route to {group}: LCM cannot start (exit code 3)", f"{pin}; for good: ladder-net.service")
         return
+    if device == "lo" == interface and not source.startswith("127."):
+        report.fault(f"{group} goes through lo, but from the address {source}: the address filter of the services drops it", f"{pin}; for good: ladder-net.service")
+        return
     if device == interface:
-        report.fine(f"{group} goes through {device}")
+        report.fine(f"{group} goes through {device} from {source}")
         return
     report.fault(f"{group} goes through {device}, not {interface}: when its cable or address goes, messages on this computer stop too",
                  f"{pin}; for good: ladder-net.service")
