@@ -9,6 +9,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ddgng/growing_signals.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
@@ -107,6 +108,24 @@ HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
       static_cast<std::uint16_t>(wins[s1] + wins[s2]);
 }
 
+/// Asks for the memory that a signal with these winners will change, while the next search runs.
+HWY_INLINE void PrefetchNeighbours(GrowingState& state, int s1) {
+  const Graph::Links& links = state.graph.links(s1);
+  HWY_UNROLL(8)
+  for (int k = 0; k < 8; ++k) {  // more are rare; beyond the degree it is some place or none
+    const int j = links.neighbour[k] & Graph::kNodeLimit;
+    hwy::Prefetch(state.search.grid().places() + j);
+  }
+}
+
+HWY_INLINE void PrefetchLinks(GrowingState& state, const Winners& winners) {
+  for (const int slot : {winners.first, winners.second}) {
+    hwy::Prefetch(state.graph.links(slot).neighbour.data());
+    hwy::Prefetch(state.graph.links(slot).born.data());
+  }
+  hwy::Prefetch(state.search.grid().places() + winners.first);
+}
+
 /// What a signal does once its winners are known.
 HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners& winners,
                       const Winners& next_winners, Ahead& ahead) {
@@ -153,7 +172,9 @@ void Signals(GrowingState& state, std::span<const Signal> signals, Winners* winn
     Ahead& now = searches[i % 2];
     Ahead& next = searches[(i + 1) % 2];
     const std::size_t next_i = std::min(i + 1, last);
+    PrefetchNeighbours(state, winners[i].first);
     if (i < last) SearchAhead(state, signals[next_i], next, winners[next_i]);
+    PrefetchLinks(state, winners[next_i]);
     Learn(state, now.signal_m, winners[i], winners[next_i], next);
     if (HWY_UNLIKELY(next.disturbed) && i < last) {
       SearchAhead(state, signals[next_i], next, winners[next_i]);

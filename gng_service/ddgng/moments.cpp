@@ -51,6 +51,11 @@ void Moments::add(int slot, int head, const Eigen::Vector3f& point_m, float dist
 }
 
 void Moments::add(std::span<const Signal> signals, const Winners* winners) {
+  for (std::size_t i = 0; i < signals.size(); ++i) {  // all asked for before the first is needed
+    const Sums& sums = sums_[winners[i].first][signals[i].head & (kNumHeads - 1)];
+    __builtin_prefetch(&sums);
+    __builtin_prefetch(&sums.zz_m2);
+  }
   for (std::size_t i = 0; i < signals.size(); ++i) {
     const Signal& signal = signals[i];
     add(winners[i].first, signal.head, signal.position_m, winners[i].first_m2);
