@@ -13,7 +13,7 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-#include "ddgng/nearest_two-inl.h"
+#include "ddgng/nearest_two_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace ddgng {

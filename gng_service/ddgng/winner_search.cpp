@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
-#include "ddgng/nearest_two-inl.h"
+#include "ddgng/nearest_two_inl.h"
 
 #ifndef DDGNG_WINNER_SEARCH_ONCE
 #define DDGNG_WINNER_SEARCH_ONCE

@@ -26,7 +26,7 @@ struct Winners {
 Winners nearest_two_linear(const Graph& graph, const Eigen::Vector3f& signal_m);
 
 /// The same answer from the few cells round the signal: first from a block of eight
-/// (nearest_two-inl.h); where that cannot prove its answer, from all cells that a ball of the
+/// (nearest_two_inl.h); where that cannot prove its answer, from all cells that a ball of the
 /// second distance touches; where those are too many, from all slots. Must be told of every change
 /// of the graph.
 class WinnerSearch {
