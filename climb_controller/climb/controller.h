@@ -70,6 +70,7 @@ class Controller {
   std::optional<Leg> next_to_grasp() const;
   void start_following(const ControllerInput& input);
   PerLeg<bool> claws_round_rungs() const;
+  bool begin_shift(const PerLeg<LegAngles>& told_rad, const PerLeg<LegAngles>& measured_rad);
   bool end_step();
   bool ends_here(const RobotNow& now) const;
   void search(Leg leg, const ControllerInput& input);

@@ -127,11 +127,11 @@ void Controller::work_climbing(const ControllerInput& input) {
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
     ends = !plan_.ready && !plan_.at_dock;
   }
-  if (!ends && plan_.shift_m.norm() > 0.0) {
-    PerLeg<LegAngles> from_rad;
-    for (const Leg leg : kLegs) from_rad[leg] = limbs_[leg].target().angles_rad;
+  if (!ends && !plan_.move.is_none()) {
+    PerLeg<LegAngles> told_rad;
+    for (const Leg leg : kLegs) told_rad[leg] = limbs_[leg].target().angles_rad;
     ++num_shifts_;
-    ends = !shift_.begin(from_rad, plan_.shift_m);
+    ends = !begin_shift(told_rad, now.stance.angles_rad);
   } else if (!ends && plan_.at_dock) {
     ends = true;
   } else if (!ends && is_stance_firm() && limbs_[plan_.leg].begin(plan_.goal)) {
@@ -142,6 +142,17 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) return;
   rests_safely_ = planner_.rests_safely(now);
   take(E::kHold);
+}
+
+bool Controller::begin_shift(const PerLeg<LegAngles>& told_rad,
+                             const PerLeg<LegAngles>& measured_rad) {
+  // As far as all legs reach: on wide ladders the last of it comes after the step.
+  for (const double part : {1.0, 0.8, 0.6, 0.4, 0.2}) {
+    BodyMove move = plan_.move;
+    move.shift_m *= part;
+    if (shift_.begin(told_rad, measured_rad, move)) return true;
+  }
+  return false;
 }
 
 bool Controller::end_step() {

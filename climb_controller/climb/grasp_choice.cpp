@@ -195,10 +195,14 @@ Refusal GraspChoice::place(const LadderView& ladder, int rung_index, const Grasp
   target.grasp_m = rung.end0_m + *best_m * target.rung_axis;
   if (!target.grasp_m.allFinite()) return Refusal::kNotFinite;
 
-  const Eigen::Vector3d back = query.T_odom_body.linear().col(2);  // out of the ladder
-  const Eigen::Vector3d normal =
-      (back - back.dot(target.rung_axis) * target.rung_axis).normalized();
-  target.pregrasp_m = target.grasp_m + motion_.pregrasp_m * normal;
+  // A claw comes to its rung, as it leaves it, along its own opening: straight at the ladder a
+  // finger would meet the rung where the shank stands aslant.
+  const LegSolution there = kinematics_.inverse(query.leg, in_body(query, target.grasp_m));
+  if (!there.reachable()) return Refusal::kGraspOutOfReach;
+  target.pregrasp_m =
+      target.grasp_m +
+      motion_.pregrasp_m *
+          (query.T_odom_body.linear() * kinematics_.retract_direction(query.leg, there.angles_rad));
   if (leftward < 0.0) target.rung_axis = -target.rung_axis;
   return Refusal::kNone;
 }

@@ -94,7 +94,7 @@ const char* name(Refusal refusal);
 struct GraspTarget {
   int rung_id = -1;
   Eigen::Vector3d grasp_m = Eigen::Vector3d::Zero();     ///< odom, on the rung's axis
-  Eigen::Vector3d pregrasp_m = Eigen::Vector3d::Zero();  ///< odom, pregrasp_m out of the ladder
+  Eigen::Vector3d pregrasp_m = Eigen::Vector3d::Zero();  ///< odom, along the claw's opening
   Eigen::Vector3d rung_axis = Eigen::Vector3d::UnitY();  ///< odom, unit, to the robot's left
   double sigma_m = 0.0;
   double cost_m = 0.0;

@@ -43,6 +43,7 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   if (!may_begin) return false;
   remember_home();
   goal_ = goal;
+  T_odom_body_ = input_.T_odom_body;
   moves_ = true;
   returned_ = false;
   way_out_m_.reset();
@@ -67,7 +68,8 @@ void LimbCycle::remember_home() {
   home_.reset();
   if (state_ != S::kLoaded) return;
   const Eigen::Vector3d held_m = kinematics_.foot_m(leg_, input_.angles_rad);
-  const Eigen::Vector3d out_m(0.0, 0.0, motion_.pregrasp_m);
+  const Eigen::Vector3d out_m =
+      motion_.pregrasp_m * kinematics_.retract_direction(leg_, input_.angles_rad);
   home_ = LimbGoal{held_rung_id_, held_m + out_m, held_m};
 }
 
@@ -84,6 +86,7 @@ void LimbCycle::enter(LimbState from) {
   in_state_s_ = waited_s_ = 0.0;
   wants_goal_ = false;
   stage_ = Stage::kOver;
+  follow_body();
   const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
   switch (state_) {
     case S::kUnloading:
@@ -96,7 +99,7 @@ void LimbCycle::enter(LimbState from) {
           foot_m + motion_.retract_m * kinematics_.retract_direction(leg_, target_.angles_rad),
           motion_.retract_m_s);
     case S::kTransit:
-      return move_foot(goal_.pregrasp_m, motion_.transit_m_s);
+      return move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
     case S::kPregrasp:
       if (parks_) {
         moves_ = false;
@@ -105,11 +108,11 @@ void LimbCycle::enter(LimbState from) {
       }
       jaw_goal_rad_ = claw_.open_rad;
       stage_ = way_out_m_ ? Stage::kOut : Stage::kOver;
-      return move_foot(way_out_m_.value_or(goal_.pregrasp_m + approach_offset_m()),
-                       motion_.transit_m_s);
+      return move_foot(way_out_m_.value_or(aimed_m(goal_.pregrasp_m)), motion_.transit_m_s);
     case S::kApproach:
       way_out_m_ = foot_m;
-      return move_foot(goal_.grasp_m + approach_offset_m(), motion_.approach_m_s);
+      torques_before_Nm_ = input_.torques_Nm;
+      return move_foot(aimed_m(goal_.grasp_m), motion_.approach_m_s);
     case S::kClosing:
       if (from == S::kReleasing) stay_home();  // opened a little and closed again
       if (is_first_try()) spent_s_ = 0.0;
@@ -117,13 +120,19 @@ void LimbCycle::enter(LimbState from) {
       jaw_goal_rad_ = claw_.closed_rad;
       return;
     case S::kVerify:
+      unpulled_rad_ = input_.angles_rad;
       pulled_from_m_ = input_.T_odom_body * kinematics_.foot_m(leg_, input_.angles_rad);
       // What the closing jaw already draws on the rung counts: it adds to the pull.
       if (from != S::kClosing) torques_before_Nm_ = input_.torques_Nm;
       return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m),
                        motion_.pull_test_m * 1.875 / motion_.pull_s);
     case S::kLoading:
-      if (from == S::kUnloading) stay_home();
+      if (from == S::kVerify) {
+        // What was pulled is let go: legs that pull against each other turn the body.
+        stage_ = Stage::kSlowing;
+        return move_joints(unpulled_rad_, motion_.pull_s);
+      }
+      stay_home();
       return move_joints(input_.angles_rad, motion_.load_s);  // re-reference: never a step
     case S::kLoaded:
       moves_ = parks_ = false;
@@ -180,22 +189,27 @@ void LimbCycle::work(const LimbInput& input) {
       if (arrived) take(parks_ ? LimbEvent::kPark : LimbEvent::kDone);
       return;
     case S::kTransit:
-    case S::kApproach:
       if (arrived) take(LimbEvent::kDone);
+      return;
+    case S::kApproach:
+      if (arrived)
+        take(LimbEvent::kDone);
+      else
+        feel_bump(input);
       return;
     case S::kPregrasp:
       return work_pregrasp(input, arrived);
     case S::kClosing:
       return finish_closing(input);
     case S::kVerify:
-      if (arrived || (!input.stop && pull_N(input) >= motion_.pull_test_max_N)) finish_pull(input);
+      if (arrived || (!input.stop && rung_force_N(input).norm() >= motion_.pull_test_max_N))
+        finish_pull(input);
       return;
     case S::kLoading:
-      target_.weight = std::max(target_.weight, path_part());
       if (has_lost(input))
         take(LimbEvent::kLost);
-      else if (arrived)
-        take(LimbEvent::kDone);
+      else
+        load(input, arrived);
       return;
     case S::kRegrasp:
       return work_regrasp(input);
@@ -232,7 +246,7 @@ void LimbCycle::work_pregrasp(const LimbInput& input, bool arrived) {
   if (stage_ == Stage::kOut) {
     stage_ = Stage::kOver;
     way_out_m_.reset();
-    move_foot(goal_.pregrasp_m + approach_offset_m(), motion_.transit_m_s);
+    move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
   } else if (is_open(input)) {
     if (in_state_s_ >= motion_.settle_s) take(LimbEvent::kDone);
   } else if (waits_too_long(input)) {
@@ -260,6 +274,7 @@ void LimbCycle::work_regrasp(const LimbInput& input) {
 
 void LimbCycle::retarget(const LimbGoal& goal) {
   if (!wants_goal_) return;
+  follow_body();
   goal_ = goal;
   num_tries_ = 0;
   ++num_places_;
@@ -281,6 +296,7 @@ void LimbCycle::put_down(const LimbGoal& goal) {
   const bool is_at_rung = state_ == S::kClosing || state_ == S::kVerify || state_ == S::kLoading;
   if (!moves_ || is_coming || is_at_rung) return;
   const bool is_on_its_rung = state_ == S::kUnloading || state_ == S::kReleasing;
+  follow_body();
   if (!is_on_its_rung) home_ = goal;
   returned_ = false;
   if (state_ == S::kAbortReturn)
@@ -291,7 +307,10 @@ void LimbCycle::put_down(const LimbGoal& goal) {
 
 void LimbCycle::finish_closing(const LimbInput& input) {
   if (input.stop) return;
-  if (confirmation_.witness().closed() && in_state_s_ >= motion_.close_s) {
+  yield(input);
+  const bool is_quiet = rung_force_N(input).norm() <= motion_.seat_N;
+  const double enough_s = is_quiet ? motion_.close_s : 2.0 * motion_.close_s;
+  if (confirmation_.witness().closed() && in_state_s_ >= enough_s) {
     take(LimbEvent::kDone);
     return;
   }
@@ -307,7 +326,7 @@ void LimbCycle::finish_closing(const LimbInput& input) {
 void LimbCycle::finish_pull(const LimbInput& input) {
   const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
   const Eigen::Vector3d moved_m = kinematics_.foot_m(leg_, input.angles_rad) - from_m;
-  last_witness_ = confirmation_.conclude({moved_m.z(), pull_N(input)});
+  last_witness_ = confirmation_.conclude({moved_m.z(), rung_force_N(input).norm()});
   // On fewer than three others the body gives way too much to be pulled at, and what has closed on
   // a rung is not opened again (invariant 3).
   const bool is_needed = !input.others_hold && last_witness_.closed();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One limb through one step, driven by the table of limb_state.h: unload, release, retract,
 // transit, approach, close, verify, load; again, elsewhere, or back to the old rung; each of it in
-// bounded time. The body stands still meanwhile, so all points are in the body frame. Whether the
+// bounded time. Points are in the body frame; the body gives way a little while the limb is off, so
+// they are put right by odometry before each way. Whether the
 // limb may be lifted, and where else to try, is not decided here.
 #pragma once
 
@@ -54,7 +55,7 @@ struct LimbParams {
                                    ///< more from when it turns back (contract)
   int max_tries = 3;               ///< at the first place: as planned and two more (contract)
   int max_tries_elsewhere = 1;     ///< at each further place: the budget allows no more (own)
-  double try_offset_m = 0.010;     ///< along the rung, one to the left, one to the right (contract)
+  double try_offset_m = 0.010;     ///< across the rung, one above, one below (contract)
   double empty_window_rad = 0.06;  ///< a jaw so near its stop has closed on nothing (own)
 };
 
@@ -123,7 +124,6 @@ class LimbCycle {
   void keep_budget();
   void remember_home();
   void stay_home();
-  double pull_N(const LimbInput& input) const;
   bool waits_too_long(const LimbInput& input);
   bool must_stay_closed(const LimbInput& input) const;
 
@@ -135,7 +135,14 @@ class LimbCycle {
   bool is_first_try() const { return num_tries_ == 0 && num_places_ == 1 && !returned_; }
   bool is_over_budget() const { return spent_s_ >= params_.budget_s; }
   double path_part() const;
-  Eigen::Vector3d approach_offset_m() const;
+  void follow_body();
+  Eigen::Vector3d aimed_m(const Eigen::Vector3d& point_m) const;
+  double try_offset_m() const;
+  void feel_bump(const LimbInput& input);
+  void stand_at(const LegAngles& angles_rad);
+  void yield(const LimbInput& input);
+  void load(const LimbInput& input, bool arrived);
+  Eigen::Vector3d rung_force_N(const LimbInput& input) const;
 
   LegKinematics kinematics_;
   LegLimits limits_;
@@ -170,7 +177,9 @@ class LimbCycle {
   bool failed_ = false;
   bool is_jaw_forced_ = false;
   GraspWitness last_witness_;
-  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();  ///< odom
+  LegAngles unpulled_rad_ = LegAngles::Zero();                     ///< measured before the pull
+  Eigen::Isometry3d T_odom_body_ = Eigen::Isometry3d::Identity();  ///< that the points belong to
+  Eigen::Vector3d pulled_from_m_ = Eigen::Vector3d::Zero();        ///< odom
   LegAngles torques_before_Nm_ = LegAngles::Zero();
 };
 

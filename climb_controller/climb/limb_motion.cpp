@@ -11,6 +11,7 @@ namespace climb {
 namespace {
 
 constexpr double kOpenWindow_rad = 0.1;
+constexpr double kYieldPart = 0.3;  ///< of what pushes it aside, each cycle
 
 bool in(double value, double low, double high) {  // false for NaN
   return value >= low && value <= high;
@@ -88,17 +89,78 @@ bool LimbCycle::is_open(const LimbInput& input) const {
   return input.claw.jaw_rad >= claw_.open_rad - kOpenWindow_rad;
 }
 
-double LimbCycle::pull_N(const LimbInput& input) const {
-  // tau = -J^T f of the rung on the foot: the change since the claw began to close.
+Eigen::Vector3d LimbCycle::rung_force_N(const LimbInput& input) const {
+  // tau = -J^T f of the rung on the foot: the change since the claw came to it.
   const Eigen::Matrix3d J = kinematics_.jacobian(leg_, input.angles_rad);
   const LegAngles change_Nm = input.torques_Nm - torques_before_Nm_;
-  return (J.transpose().inverse() * change_Nm).norm();
+  return -(J.transpose().inverse() * change_Nm);
 }
 
-Eigen::Vector3d LimbCycle::approach_offset_m() const {
-  // The first try at the point itself, then a little to the left, then to the right.
-  const double side = num_tries_ == 0 ? 0.0 : (num_tries_ % 2 == 1 ? 1.0 : -1.0);
-  return {0.0, side * params_.try_offset_m, 0.0};
+double LimbCycle::try_offset_m() const {
+  // The first try as aimed, then above it, then below.
+  if (num_tries_ == 0) return 0.0;
+  return num_tries_ % 2 == 1 ? params_.try_offset_m : -params_.try_offset_m;
+}
+
+Eigen::Vector3d LimbCycle::aimed_m(const Eigen::Vector3d& point_m) const {
+  // Below the fixed finger a rung has 3 mm to spare, above the jaw five times as much.
+  const LegSolution there = kinematics_.inverse(leg_, goal_.grasp_m);
+  if (!there.reachable()) return point_m;
+  const Eigen::Matrix3d R_body_claw = kinematics_.R_body_claw(leg_, there.angles_rad);
+  return point_m + (motion_.aim_up_m + try_offset_m()) * R_body_claw.col(0) +
+         motion_.aim_out_m * R_body_claw.col(2);
+}
+
+void LimbCycle::follow_body() {
+  const Eigen::Isometry3d T_now_before = input_.T_odom_body.inverse() * T_odom_body_;
+  T_odom_body_ = input_.T_odom_body;
+  const auto put_right = [&](LimbGoal& goal) {
+    goal.pregrasp_m = T_now_before * goal.pregrasp_m;
+    goal.grasp_m = T_now_before * goal.grasp_m;
+  };
+  put_right(goal_);
+  if (home_) put_right(*home_);
+  if (way_out_m_) way_out_m_ = T_now_before * *way_out_m_;
+}
+
+void LimbCycle::stand_at(const LegAngles& angles_rad) {
+  target_.angles_rad = angles_rad;
+  target_.velocity_rad_s.setZero();
+  move_joints(angles_rad, 0.0);
+}
+
+void LimbCycle::yield(const LimbInput& input) {
+  // The closing jaw draws the claw to its seat on the rung; stiff joints would pull against it.
+  stand_at(target_.angles_rad +
+           kYieldPart * (kinematics_.clamped(leg_, input.angles_rad) - target_.angles_rad));
+}
+
+void LimbCycle::load(const LimbInput& input, bool arrived) {
+  if (stage_ == Stage::kSlowing) {
+    if (!arrived) return;
+    // Down until the finger lies on the rung: a claw that only its jaw keeps up would settle later,
+    // and the body with it.
+    stage_ = Stage::kOut;
+    const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
+    return move_foot(foot_m - Eigen::Vector3d(motion_.seat_m, 0.0, 0.0), motion_.seat_m_s);
+  }
+  if (stage_ == Stage::kOut) {
+    const bool is_seated = !input.stop && rung_force_N(input).x() >= motion_.seat_N;
+    if (is_seated) stand_at(target_.angles_rad);
+    if (!is_seated && !arrived) return;
+    stage_ = Stage::kOver;
+    in_state_s_ = 0.0;
+  }
+  target_.weight = std::max(target_.weight, std::min(1.0, in_state_s_ / motion_.load_s));
+  if (arrived && in_state_s_ >= motion_.load_s) take(LimbEvent::kDone);
+}
+
+void LimbCycle::feel_bump(const LimbInput& input) {
+  if (input.stop || !(rung_force_N(input).norm() >= motion_.bump_N)) return;
+  const Eigen::Vector3d left_m =
+      aimed_m(goal_.grasp_m) - kinematics_.foot_m(leg_, target_.angles_rad);
+  stand_at(kinematics_.clamped(leg_, input.angles_rad));
+  take(left_m.norm() <= motion_.bump_near_m ? LimbEvent::kDone : LimbEvent::kMissed);
 }
 
 }  // namespace climb

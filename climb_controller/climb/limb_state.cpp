@@ -20,6 +20,7 @@ constexpr LimbTransition kTransitions[] = {
     {S::kLoading, E::kDone, S::kLoaded},
 
     // No grasp: again, and then back to the rung that held before.
+    {S::kApproach, E::kMissed, S::kRegrasp},
     {S::kClosing, E::kMissed, S::kRegrasp},
     {S::kVerify, E::kMissed, S::kRegrasp},
     {S::kLoading, E::kLost, S::kRegrasp},

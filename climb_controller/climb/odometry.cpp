@@ -102,9 +102,10 @@ void Odometry::find_slip(const OdometryInput& input) {
 void Odometry::keep_anchors(const OdometryInput& input) {
   for (const Leg leg : kLegs) {
     Anchor& anchor = anchors_[leg];
+    const bool is_loaded = input.weight[leg] >= 1.0 - kLeastWeight;
     if (!(input.weight[leg] > kLeastWeight)) {
       anchor.set = false;
-    } else if (!anchor.set) {
+    } else if (!anchor.set && is_loaded) {  // while it is being loaded its claw still settles
       anchor.set = true;
       anchor.position_m = estimate_.position_odom_m +
                           estimate_.q_odom_body * kinematics_.foot_m(leg, input.angles_rad[leg]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The body's pose in the odom frame from the feet that hold and the IMU's orientation. Each foot
-// keeps the odom point where it began to hold; no drift arises while the same feet hold.
+// keeps the odom point where it first held fully; no drift arises while the same feet hold.
 #pragma once
 
 #include <optional>

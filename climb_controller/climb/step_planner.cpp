@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/LU>
+
 namespace climb {
 namespace {
 
@@ -13,6 +15,9 @@ constexpr double kUsualSpacing_m = 0.30;
 constexpr double kLookFromBelow_m = 0.20;
 constexpr double kInPlace_m = 0.008;     ///< a body so near to where a step wants it is not shifted
 constexpr double kMaxSideways_m = 0.02;  ///< of one shift, across the ladder and out of it
+constexpr double kStraight_rad = 0.02;   ///< a body so little askew is not turned
+constexpr double kLeastSpread_m4 = 1e-6;  ///< of the feet, for a plane through them
+constexpr double kMaxTurn_rad = 0.10;     ///< of one shift, about each axis
 
 double height_m(const RungView& rung) {
   return 0.5 * (rung.end0_m.z() + rung.end1_m.z());
@@ -20,6 +25,28 @@ double height_m(const RungView& rung) {
 
 bool is_usable(const RungView& rung) {
   return rung.trusted && rung.end0_m.allFinite() && rung.end1_m.allFinite();
+}
+
+/// The body's attitude, in the body frame, in which it faces the plane of its feet with its head
+/// up. Small angles: about y and x from the feet, about z from gravity.
+Eigen::Matrix3d leveled(const PerLeg<Eigen::Vector3d>& feet_m, const Eigen::Vector3d& up_body) {
+  Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& foot_m : feet_m) middle_m += 0.25 * foot_m;
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d products = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector3d& foot_m : feet_m) {
+    const Eigen::Vector3d off_m = foot_m - middle_m;
+    squares += off_m.head<2>() * off_m.head<2>().transpose();
+    products += off_m.z() * off_m.head<2>();
+  }
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+  if (squares.determinant() > kLeastSpread_m4) slope = squares.inverse() * products;
+  const auto small = [](double angle) { return std::clamp(angle, -kMaxTurn_rad, kMaxTurn_rad); };
+  const double about_z = up_body.x() > 0.5 ? up_body.y() / up_body.x() : 0.0;
+  return (Eigen::AngleAxisd(small(about_z), Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(small(-slope.x()), Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(small(slope.y()), Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
 }
 
 double distance_m(const RungView& rung, const Eigen::Vector3d& point_m) {
@@ -151,7 +178,7 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
   }
   if (!upwards && is_at_dock(now)) {
     step.at_dock = true;
-    if (may_shift) step.shift_m = shift_m(0.0, now);
+    if (may_shift) step.move = body_move(0.0, now);
     return step;
   }
   const SupportVerdict verdict = support_.check_without(now.stance, step.leg);
@@ -162,11 +189,11 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
   GraspQuery query = query_of(step.leg, upwards, now);
   const double ahead_m = body_shift_m(spacing_m(ladder), upwards);
   query.next_shift_m = ahead_m * query.T_odom_body.linear().col(0);
-  Eigen::Vector3d first_m = Eigen::Vector3d::Zero();
-  if (may_shift) first_m = shift_m(ahead_m, now);
-  query.T_odom_body.pretranslate(query.T_odom_body.linear() * first_m);
+  BodyMove move;
+  if (may_shift) move = body_move(ahead_m, now);
+  query.T_odom_body = query.T_odom_body * move.pose();
   PlannedStep chosen = choose(query, now, ladder);
-  chosen.shift_m = first_m;
+  chosen.move = move;
   return chosen;
 }
 
@@ -207,18 +234,27 @@ GraspQuery StepPlanner::query_of(Leg leg, bool upwards, const RobotNow& now) con
   return query;
 }
 
-Eigen::Vector3d StepPlanner::shift_m(double ahead_m, const RobotNow& now) const {
-  // Before a step the body is a quarter of the rungs' distance ahead of the middle of its feet.
-  // Told from the feet, not summed up: whatever was interrupted or sagged is made good.
+BodyMove StepPlanner::body_move(double ahead_m, const RobotNow& now) const {
+  // Before a step the body is a quarter of the rungs' distance ahead of the middle of its feet and
+  // looks straight up the ladder. Told from the feet, not summed up: whatever was interrupted,
+  // sagged or turned is made good.
+  PerLeg<Eigen::Vector3d> feet_m;
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();
   for (const Leg leg : kLegs) {
-    middle_m += 0.25 * kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+    feet_m[leg] = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+    middle_m += 0.25 * feet_m[leg];
   }
-  const double off_m = middle_m.z() + params_.motion.stand_off_m;
-  const Eigen::Vector3d shift_m(middle_m.x() + ahead_m,
-                                std::clamp(middle_m.y(), -kMaxSideways_m, kMaxSideways_m),
-                                std::clamp(off_m, -kMaxSideways_m, kMaxSideways_m));
-  return shift_m.norm() > kInPlace_m ? shift_m : Eigen::Vector3d(0.0, 0.0, 0.0);
+  const Eigen::Matrix3d R_body_level = leveled(feet_m, now.stance.up_body);
+  // From the moved body the middle of the feet is behind and below.
+  const Eigen::Vector3d seen_m(-ahead_m, 0.0, -params_.motion.stand_off_m);
+  BodyMove move;
+  move.turn = Eigen::Quaterniond(R_body_level);
+  move.shift_m = middle_m - move.turn * seen_m;
+  move.shift_m.y() = std::clamp(move.shift_m.y(), -kMaxSideways_m, kMaxSideways_m);
+  move.shift_m.z() = std::clamp(move.shift_m.z(), -kMaxSideways_m, kMaxSideways_m);
+  const bool is_in_place =
+      move.shift_m.norm() <= kInPlace_m && move.turn.vec().norm() <= 0.5 * kStraight_rad;
+  return is_in_place ? BodyMove() : move;
 }
 
 PlannedStep StepPlanner::choose(GraspQuery query, const RobotNow& now, const LadderView& ladder) {

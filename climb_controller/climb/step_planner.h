@@ -3,6 +3,7 @@
 // the crawl. Goals come out in the body frame as it stands.
 #pragma once
 
+#include "climb/body_shift.h"
 #include "climb/controller_io.h"
 #include "climb/step_order.h"
 
@@ -15,8 +16,8 @@ struct PlannedStep {
   bool at_dock = false;              ///< on the way down: all claws where they were in the dock
   Refusal refusal = Refusal::kNone;  ///< when not ready
   Burden burden = Burden::kBorne;    ///< when not ready and nothing is refused
-  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();  ///< of the body, body frame, before the step
-  LimbGoal goal;                                      ///< body frame, after the shift
+  BodyMove move;                     ///< of the body, before the step
+  LimbGoal goal;                     ///< body frame, after the shift
 };
 
 /// What the planner needs to know of the robot now.
@@ -79,7 +80,7 @@ class StepPlanner {
   Leg next_leg_of(bool upwards) const;
   bool has_stepped(Leg leg, bool upwards, const RobotNow& now) const;
   GraspQuery query_of(Leg leg, bool upwards, const RobotNow& now) const;
-  Eigen::Vector3d shift_m(double ahead_m, const RobotNow& now) const;
+  BodyMove body_move(double ahead_m, const RobotNow& now) const;
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;
