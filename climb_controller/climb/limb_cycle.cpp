@@ -130,7 +130,7 @@ void LimbCycle::enter(LimbState from) {
       if (from == S::kVerify) {
         // What was pulled is let go: legs that pull against each other turn the body.
         stage_ = Stage::kSlowing;
-        return move_joints(unpulled_rad_, motion_.pull_s);
+        return move_joints(unpulled_rad_, 0.5 * motion_.pull_s);
       }
       stay_home();
       return move_joints(input_.angles_rad, motion_.load_s);  // re-reference: never a step

@@ -69,7 +69,7 @@ struct MotionParams {
   double lateral_home_m = 0.15;  ///< |y| of a foot (run)
   double retract_m = 0.06;       ///< along the claw's opening axis (run)
   double retract_m_s = 0.20;     ///< (run)
-  double transit_m_s = 0.30;     ///< (run: 0.45 needs 2.26 rad/s)
+  double transit_m_s = 0.40;     ///< (run: 0.45 needs 2.26 rad/s)
   double pregrasp_m = 0.05;      ///< before the rung, along the claw's opening axis (run)
   double aim_up_m = 0.008;       ///< the claw comes so much too high: a finger is above (run)
   double aim_out_m = 0.003;      ///< ... and stays so far before the rung (run)

@@ -59,14 +59,21 @@ struct Scene {
   GraspChoice choice{kParams};
 };
 
-// The next rung up, at the lateral home, before it the pregrasp 50 mm out of the ladder.
+// The next rung up, at the lateral home, before it the pregrasp 50 mm out along the claw's opening.
 TEST(GraspChoice, TakesTheNextRungAtTheLateralHome) {
   Scene scene;
   const GraspDecision decision = scene.choose();
   ASSERT_EQ(decision.refusal, Refusal::kNone) << name(decision.refusal);
   EXPECT_EQ(decision.target.rung_id, 4);
   EXPECT_LE((decision.target.grasp_m - Eigen::Vector3d(0.0, -0.15, 1.2)).norm(), 1e-12);
-  EXPECT_LE((decision.target.pregrasp_m - Eigen::Vector3d(-0.05, -0.15, 1.2)).norm(), 1e-12);
+  const LegKinematics kinematics(kParams.robot);
+  const Eigen::Isometry3d& T_odom_body = scene.query.T_odom_body;
+  const LegAngles there_rad =
+      kinematics.inverse(kFrontRight, T_odom_body.inverse() * decision.target.grasp_m).angles_rad;
+  const Eigen::Vector3d out =
+      T_odom_body.linear() * kinematics.retract_direction(kFrontRight, there_rad);
+  EXPECT_LE((decision.target.pregrasp_m - decision.target.grasp_m - 0.05 * out).norm(), 1e-9);
+  EXPECT_LT(out.x(), -0.5);  // out of the ladder
   EXPECT_LE((decision.target.rung_axis - Eigen::Vector3d::UnitY()).norm(), 1e-12);
   EXPECT_NEAR(decision.target.sigma_m, 0.002, 1e-9);
   ASSERT_EQ(decision.rungs.size(), 7U);

@@ -114,6 +114,15 @@ class LadderStand {
     return 0;
   }
 
+  /// The closing jaw draws the claw to its seat.
+  void center(Eigen::Vector3d& held_m, int id) const {
+    for (const climb::RungView& rung : rungs) {
+      if (rung.id != id) continue;
+      held_m.x() = rung.end0_m.x();
+      held_m.z() = rung.end0_m.z();
+    }
+  }
+
   void follow(const climb::PerAxis<climb::AxisCommand>& axes) {
     const climb::ClawParams& claw = params_.robot.claw;
     int num_held = 0;
@@ -132,6 +141,7 @@ class LadderStand {
       if (closes && rung > 0 && held_rung_[leg] == 0 && jaw_rad_[leg] > claw.on_rung_rad - 0.02) {
         held_rung_[leg] = rung;
         held_m_[leg] = T_odom_body_ * kinematics_.foot_m(leg, measured_rad_[leg]);
+        center(held_m_[leg], rung);
       }
       const double stop_rad = held_rung_[leg] > 0 ? claw.on_rung_rad : claw.closed_rad;
       jaw_rad_[leg] = std::max(jaw_goal_rad, stop_rad);

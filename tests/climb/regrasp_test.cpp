@@ -46,7 +46,7 @@ TEST_F(RegraspTest, TriesElsewhereOnTheRungThenReturns) {
   EXPECT_EQ(output_.state, S::kHold) << where();
   EXPECT_EQ(output_.refusal, Refusal::kAvoided);
   EXPECT_EQ(output_.rung_ids[kRearRight], 1);
-  EXPECT_LE(seconds, 20.0 + 8.0);
+  EXPECT_LE(seconds, 20.0 + 10.0);
 }
 
 // Where two rungs are within a step, the farther one is taken when the nearer one does not hold.
@@ -135,7 +135,7 @@ TEST_F(RegraspTest, PullsNoHarderThanItMay) {
   }
   EXPECT_EQ(output_.limbs[kRearRight], LimbState::kLoading);
   EXPECT_GE(most_N, 40.0);
-  EXPECT_LE(most_N, 110.0);
+  EXPECT_LE(most_N, 115.0);
 }
 
 }  // namespace

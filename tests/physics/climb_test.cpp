@@ -1,114 +1,115 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The real controller and the real CAN master on the robot in physics: it hangs, it takes a rung,
-// it survives a rung that breaks, all with claws that hold by contact.
+// The real controller and the real CAN master on the robot in physics: it hangs, climbs to the top
+// on rungs that perception sees wrongly, comes down into the dock, and stays on the ladder when a
+// rung breaks, all with claws that hold by contact.
 #include <gtest/gtest.h>
 
-#include "robot_in_a_box/climb_box.h"
-#include "simulator/physics/before_ladder.h"
-#include "simulator/physics/physics_mechanics.h"
+#include "robot_in_a_box/physical_climb.h"
 
 namespace robot_in_a_box {
 namespace {
 
 using climb::ControllerState;
 
-simulator::Scene ladder() {
-  simulator::SceneParams params;
-  params.num_rungs = 12;
-  params.seed = 2;
-  params.rung_diameter_m = 0.028;
-  return simulator::make_scene(params);
+PhysicalClimbParams ladder(int num_rungs, double spacing_m = 0.30) {
+  PhysicalClimbParams params;
+  params.scene.num_rungs = num_rungs;
+  params.scene.spacing_m = spacing_m;
+  params.scene.seed = params.seed = 2;
+  params.perception.bias_m = 0.005;
+  params.perception.jitter_m = 0.003;
+  params.perception.tilt_rad = 0.017;
+  return params;
 }
 
-class PhysicsClimbTest : public ::testing::Test {
- protected:
-  PhysicsClimbTest() : model_(scene_), box_(box_params()) {}
-
-  ClimbBoxParams box_params() {
-    ClimbBoxParams params;
-    params.plant = simulator::before_ladder(scene_);
-    params.seed = 2;
-    params.perception.bias_m = 0.001;
-    params.mechanics = [this](const simulator::PlantParams& plant) {
-      return std::make_unique<simulator::PhysicsMechanics>(plant, model_);
-    };
-    return params;
-  }
-  bool reach(ControllerState state, double within_s) {
-    for (int i = 0; i < static_cast<int>(100.0 * within_s) && box_.state() != state; ++i) {
-      box_.cycle();
-    }
-    return box_.state() == state;
-  }
-  void run_s(double duration_s) {
-    for (int i = 0; i < static_cast<int>(100.0 * duration_s); ++i) box_.cycle();
-  }
-  /// Power-up, four claws closed in the dock, dock released.
-  bool hang() {
-    if (!reach(ControllerState::kDisarmed, 5.0)) return false;
-    box_.order(climb::Order::kArm);
-    if (!reach(ControllerState::kArming, 1.0) || !reach(ControllerState::kHold, 60.0)) return false;
-    box_.plant().set_docked(false);
-    run_s(2.0);
-    return true;
-  }
-  int num_held() const {
-    int num = 0;
-    for (int leg = 0; leg < simulator::kNumLegs; ++leg) num += box_.plant().leg(leg).holds ? 1 : 0;
-    return num;
-  }
-  double height_m() const { return box_.plant().T_world_body().translation().z(); }
-
-  simulator::Scene scene_ = ladder();
-  simulator::PhysicsModel model_;
-  ClimbBox box_;
-};
-
-/// Released from the dock the robot hangs on four claws: it sags by the claws' clearance at most,
-/// and what the claws put on the rungs is its weight.
-TEST_F(PhysicsClimbTest, HangsOnFourClaws) {
-  const double docked_m = height_m();
-  ASSERT_TRUE(hang()) << climb::name(box_.report().output.reason);
-  EXPECT_EQ(num_held(), simulator::kNumLegs);
-  EXPECT_LT(docked_m - height_m(), 0.015);
-  double down_N = 0.0;
-  for (int leg = 0; leg < simulator::kNumLegs; ++leg) {
-    down_N -= box_.plant().leg(leg).force_on_rung_N.z();
-  }
-  EXPECT_NEAR(down_N, 9.81 * mj_getTotalmass(&model_.model()), 5.0);
-}
-
-/// One whole cycle of four limbs takes the body up by one rung, with at least three claws on rungs
-/// all the time, no fall and no violated invariant.
-TEST_F(PhysicsClimbTest, ClimbsOneRung) {
-  ASSERT_TRUE(hang()) << climb::name(box_.report().output.reason);
-  const double before_m = height_m();
-  box_.order(climb::Order::kClimb);
-  int least_held = simulator::kNumLegs;
-  for (int i = 0; i < 3200; ++i) {
-    box_.cycle();
-    least_held = std::min(least_held, num_held());
-  }
-  EXPECT_EQ(box_.state(), ControllerState::kClimbing) << climb::name(box_.report().output.reason);
-  EXPECT_GE(least_held, 3);
-  EXPECT_GT(height_m() - before_m, 0.25);
-  EXPECT_FALSE(box_.plant().truth().fallen);
-  for (const simulator::Violation& violation : box_.monitor().violations()) {
+void expect_no_violation(const PhysicalClimb& climb) {
+  for (const simulator::Violation& violation : climb.box().monitor().violations()) {
     ADD_FAILURE() << describe(violation);
   }
 }
 
-/// A rung that breaks under a rear claw at rest leaves the robot on the ladder, stopped with the
-/// loss as its reason.
-TEST_F(PhysicsClimbTest, SurvivesABrokenRung) {
-  ASSERT_TRUE(hang()) << climb::name(box_.report().output.reason);
-  const int rung = box_.plant().leg(0).rung_index;
+/// Released from the dock the robot hangs on four claws: it sags by the claws' clearance at most,
+/// and what the claws put on the rungs is its weight.
+TEST(PhysicalClimb, HangsOnFourClaws) {
+  PhysicalClimb climb(ladder(5));
+  const double docked_m = climb.height_m();
+  ASSERT_TRUE(climb.hang()) << climb.reason();
+  EXPECT_EQ(climb.num_held(), simulator::kNumLegs);
+  EXPECT_LT(docked_m - climb.height_m(), 0.015);
+  double down_N = 0.0;
+  for (int leg = 0; leg < simulator::kNumLegs; ++leg) {
+    down_N -= climb.box().plant().leg(leg).force_on_rung_N.z();
+  }
+  EXPECT_NEAR(down_N, 9.81 * mj_getTotalmass(&climb.model().model()), 5.0);
+}
+
+/// Rungs seen 5 mm, another 3 mm in each message and 1 degree off are climbed to the top, with
+/// three claws on rungs all the time and no drive at its limit; and down again into the dock.
+TEST(PhysicalClimb, ClimbsToTheTopAndBackIntoTheDock) {
+  PhysicalClimb climb(ladder(5));
+  ASSERT_TRUE(climb.hang()) << climb.reason();
+  ASSERT_EQ(climb.climb(true, 120.0), ClimbEnd::kTop) << climb.reason();
+  const simulator::Figures& figures = climb.figures();
+  EXPECT_EQ(figures.rungs_climbed, 2);
+  EXPECT_EQ(figures.falls, 0);
+  EXPECT_GE(figures.min_support, 3);
+  EXPECT_LT(figures.peak_joint_torque_Nm, 30.0);
+  EXPECT_LT(figures.peak_grip_N, 186.0);  // tears a claw off
+  ASSERT_EQ(climb.climb(false, 180.0), ClimbEnd::kDock) << climb.reason();
+  EXPECT_TRUE(climb.back_into_dock()) << climb.reason();
+  EXPECT_EQ(figures.falls, 0);
+  EXPECT_GE(figures.min_support, 3);
+  expect_no_violation(climb);
+}
+
+struct Break {
+  double spacing_m;
+  int leg;
+};
+
+class RungBreaksAtRest : public ::testing::TestWithParam<Break> {};
+
+/// In the stance that it rests in, any one rung may break: it stays on the ladder with three claws
+/// and says why it stopped.
+TEST_P(RungBreaksAtRest, WithoutAFall) {
+  PhysicalClimb climb(ladder(6, GetParam().spacing_m));
+  ASSERT_TRUE(climb.hang()) << climb.reason();
+  climb.box().order(climb::Order::kClimb);
+  climb.run_s(1.0);
+  climb.box().order(climb::Order::kHold);
+  ASSERT_TRUE(climb.reach(ControllerState::kHold, 60.0)) << climb.reason();
+  ASSERT_TRUE(climb.box().report().output.rests_safely);
+  const int rung = climb.box().plant().leg(GetParam().leg).rung_index;
   ASSERT_GE(rung, 0);
-  box_.plant().world().rung(box_.plant().leg(2).rung_index).break_at_us = box_.now_us();
-  run_s(3.0);
-  EXPECT_FALSE(box_.plant().truth().fallen);
-  EXPECT_EQ(box_.state(), ControllerState::kFaultHold);
-  EXPECT_GE(num_held(), 2);
+  const double before_m = climb.height_m();
+  climb.box().plant().world().rung(rung).break_at_us = climb.box().now_us();
+  climb.run_s(3.0);
+  EXPECT_EQ(climb.figures().falls, 0);
+  EXPECT_EQ(climb.num_held(), 3);
+  EXPECT_EQ(climb.box().state(), ControllerState::kFaultHold);
+  EXPECT_EQ(climb.reason(), "stance lost");
+  EXPECT_LT(before_m - climb.height_m(), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(EachRung, RungBreaksAtRest,
+                         ::testing::Values(Break{0.30, 0}, Break{0.30, 1}, Break{0.30, 2},
+                                           Break{0.30, 3}, Break{0.25, 0}, Break{0.25, 2},
+                                           Break{0.34, 1}, Break{0.34, 3}));
+
+/// A rung that breaks at less than a pull test asks of it is found out by that test: no fall, and
+/// never fewer than three claws.
+TEST(PhysicalClimb, AWeakRungIsFoundOut) {
+  PhysicalClimbParams params = ladder(7);
+  params.weak_rungs = {{4, 40.0}};
+  PhysicalClimb climb(params);
+  ASSERT_TRUE(climb.hang()) << climb.reason();
+  const ClimbEnd end = climb.climb(true, 200.0);
+  EXPECT_NE(end, ClimbEnd::kFallen);
+  EXPECT_NE(end, ClimbEnd::kTop);
+  EXPECT_NE(climb.reason(), "");
+  EXPECT_TRUE(climb.box().plant().world().rung(4).broken);
+  EXPECT_GE(climb.figures().min_support, 3);
+  expect_no_violation(climb);
 }
 
 }  // namespace
