@@ -117,7 +117,8 @@ TEST_F(RegraspTest, AJawThatDoesNotOpenHolds) {
   for (const Leg leg : kLegs) EXPECT_EQ(output_.limbs[leg], LimbState::kLoaded);
 }
 
-// The pull test ends at the force that a claw is meant to bear (100 N), however stiff the rung.
+// The pull test ends at the force that a claw is meant to bear (100 N), however stiff the rung; what
+// the closed jaw still draws the other way when it begins (20 N at most) is overcome first.
 TEST_F(RegraspTest, PullsNoHarderThanItMay) {
   climb_to(LimbState::kVerify);
   double most_N = 0.0;
@@ -135,7 +136,7 @@ TEST_F(RegraspTest, PullsNoHarderThanItMay) {
   }
   EXPECT_EQ(output_.limbs[kRearRight], LimbState::kLoading);
   EXPECT_GE(most_N, 40.0);
-  EXPECT_LE(most_N, 115.0);
+  EXPECT_LE(most_N, 125.0);
 }
 
 }  // namespace
