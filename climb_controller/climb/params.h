@@ -22,11 +22,12 @@ struct JointLimits {
 
 /// One claw: a fixed finger above the rung, a moving jaw from beneath.
 struct ClawParams {
-  double width_m = 0.034;      ///< along the rung (run)
-  double open_rad = 1.2;       ///< (run)
-  double closed_rad = -0.60;   ///< closing target; the jaw's stop, reached only when empty (run)
+  double width_m = 0.034;       ///< along the rung (run)
+  double open_rad = 1.2;        ///< (run)
+  double closed_rad = -0.60;    ///< closing target; the jaw's stop, reached only when empty (run)
   double on_rung_rad = -0.465;  ///< jaw angle on a rung of 27 mm (run)
-  double on_rung_window_rad = 0.105;  ///< a grasp reads on_rung within this (run: 25..30 mm, pulled)
+  double on_rung_window_rad =
+      0.105;                         ///< a grasp reads on_rung within this (run: 25..30 mm, pulled)
   double capture_m = 0.015;          ///< a rung axis nearer to the foot than this is caught (run)
   double min_rung_radius_m = 0.010;  ///< (run: 22 mm rungs, less 1 mm of measuring error)
   double max_rung_radius_m = 0.021;  ///< (run: 40 mm rungs, and 1 mm)

@@ -117,8 +117,8 @@ TEST_F(RegraspTest, AJawThatDoesNotOpenHolds) {
   for (const Leg leg : kLegs) EXPECT_EQ(output_.limbs[leg], LimbState::kLoaded);
 }
 
-// The pull test ends at the force that a claw is meant to bear (100 N), however stiff the rung; what
-// the closed jaw still draws the other way when it begins (20 N at most) is overcome first.
+// The pull test ends at the force that a claw is meant to bear (100 N), however stiff the rung;
+// what the closed jaw still draws the other way when it begins (20 N at most) is overcome first.
 TEST_F(RegraspTest, PullsNoHarderThanItMay) {
   climb_to(LimbState::kVerify);
   double most_N = 0.0;
