@@ -16,10 +16,10 @@ using climb::Order;
 using simulator::WireFault;
 using S = climb::ControllerState;
 
-/// A jaw that presses anew leaves its rung's window where no rung is: 0.10 of the 0.16 rad to its
+/// A jaw that presses anew leaves its rung's window where no rung is: 0.13 of the 0.16 rad to its
 /// stop, its target at 5 rad/s and its drive 30 ms behind that. One cycle before, the first target
 /// is the measured one.
-constexpr std::int64_t kJawTravel_us = 50'000;
+constexpr std::int64_t kJawTravel_us = 70'000;
 
 bool works(const Situation& at) {
   return at.state == S::kClimbing || at.state == S::kArming;
