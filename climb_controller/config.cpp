@@ -178,6 +178,13 @@ void read(ConfigTable table, PerceptionParams& p) {
   table.read("max_ahead_us", p.max_ahead_us);
 }
 
+void read(ConfigTable table, RungMemoryParams& p) {
+  table.read("memory_s", p.memory_s);
+  table.read("ahead_m", p.ahead_m);
+  table.read("same_rung_m", p.same_rung_m);
+  table.require(check(p));
+}
+
 void read(ConfigTable table, DriveKind& p) {
   table.read("counts_per_rad", p.counts_per_rad);
   table.read("gear", p.gear);
@@ -343,6 +350,7 @@ ServiceParams read_params(ConfigTable table) {
   read(table.table("lines"), params.lines);
   read(table.table("attitude"), params.attitude);
   read(table.table("perception"), params.perception);
+  read(table.table("memory"), params.memory);
 
   table.table("attitude").require(check(params.attitude));
   CycleParams cycle = params.cycle;

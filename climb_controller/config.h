@@ -10,6 +10,7 @@
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/drive_layout.h"
 #include "climb_controller/perception_inbox.h"
+#include "climb_controller/rung_memory.h"
 #include "gpio/line_params.h"
 #include "runtime/config.h"
 
@@ -29,6 +30,7 @@ struct ServiceParams {
   gpio::LinesParams lines;
   climb::AttitudeParams attitude;
   PerceptionParams perception;
+  RungMemoryParams memory;
   std::string flight_folder;  ///< "" = $STATE_DIRECTORY, else nowhere
 };
 

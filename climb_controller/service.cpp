@@ -55,6 +55,7 @@ class ClimbService final : public runtime::Service {
         imu_in_(context.bus.queue(channels::kImu, kMaxWaitingSamples)),
         orders_in_(context.bus.shared_queue(channels::kCommand, kMaxWaitingOrders)),
         rungs_(params_.perception),
+        memory_(params_.memory),
         imu_(params_.attitude),
         chronicle_(context.journal),
         control_(params_) {
@@ -95,6 +96,7 @@ class ClimbService final : public runtime::Service {
   runtime::Queue<ladder_msgs::imu_t>& imu_in_;
   runtime::Queue<ladder_msgs::command_t>& orders_in_;
   RungsInbox rungs_;
+  RungMemory memory_;
   ImuInbox imu_;
   Chronicle chronicle_;
   ControlThread control_;
@@ -124,7 +126,12 @@ void ClimbService::take_messages(const base::Now& now) {
   }
   if (const ladder_msgs::ladder_t* rungs = rungs_in_.take(now.utime_us)) {
     const auto verdict = rungs_.accept(*rungs, now, control_.rungs().writing());
-    if (verdict == runtime::Reject::kNone) control_.rungs().publish();
+    if (verdict == runtime::Reject::kNone) {
+      const Eigen::Isometry3d T_odom_body =
+          control_.news().newest().report.output.pose.T_odom_body();
+      memory_.complete(now.monotonic_us, T_odom_body, control_.rungs().writing());
+      control_.rungs().publish();
+    }
   }
   while (const ladder_msgs::command_t* order = orders_in_.take(now.utime_us)) {
     if (!control_.orders().push(to_command(*order))) {

@@ -39,7 +39,8 @@ ClimbBox::ClimbBox(const ClimbBoxParams& params)
       perception_(params.perception, params.seed),
       master_(servo_bus_params(params.drives, params.cycle.controller.climb), transport_),
       cycle_(cycle_params(params), master_),
-      monitor_(monitor_params(params, transport_.port())) {
+      monitor_(monitor_params(params, transport_.port())),
+      attitude_from_samples_(params.attitude_from_samples) {
   bus_.record(true);
   monitor_.on_truth(plant_.truth());
 }
@@ -67,7 +68,7 @@ void ClimbBox::millisecond() {
   now_us_ += kStep_us;
   if (watcher_ != nullptr) watcher_->before(now_us_);
   plant_.advance(now_us_);
-  perception_.update(now_us_, plant_, T_odom_body());
+  eyes_->look(now_us_, plant_, report_);
   transport_.set_time(now_us_);
   observe();
   if (now_us_ < hung_until_us_ || now_us_ % kCycle_us == 0) return;
@@ -93,15 +94,9 @@ void ClimbBox::step() {
   inbox_.lines.estop_clear = !lines.estop_active;
   inbox_.lines.lost = lines.lost;
 
-  const simulator::ImuReading told = plant_.imu();
-  if (!imu_silent) {
-    inbox_.imu.q_odom_body = told.q_world_body * imu_turn;
-    inbox_.imu.acceleration_m_s2 = imu_falls ? 0.0 : told.specific_force_m_s2.norm();
-    imu_heard_us_ = now_us_;
-  }
-  inbox_.imu.valid = now_us_ - imu_heard_us_ <= kImuLost_us;
-  inbox_.ladder = perception_.view();
-  inbox_.ladder_received_us = perception_.received_us();
+  read_imu();
+  inbox_.ladder = eyes_->view();
+  inbox_.ladder_received_us = eyes_->received_us();
   inbox_.command = {};
   orders_.pop(inbox_.command);
   inbox_.faults = flags_ | clock_.begin(now_us_, now_us_ + slept_us_);
@@ -109,6 +104,18 @@ void ClimbBox::step() {
   tell_monitor();
   if (terminating_) end_when_possible();
   if (watcher_ != nullptr) watcher_->on_report(report_);
+}
+
+void ClimbBox::read_imu() {
+  const simulator::ImuReading told = plant_.imu();
+  attitude_.add({now_us_, told.specific_force_m_s2, told.angular_rate_rad_s});
+  if (!imu_silent) {
+    inbox_.imu.q_odom_body =
+        (attitude_from_samples_ ? attitude_.q_odom_body() : told.q_world_body) * imu_turn;
+    inbox_.imu.acceleration_m_s2 = imu_falls ? 0.0 : told.specific_force_m_s2.norm();
+    imu_heard_us_ = now_us_;
+  }
+  inbox_.imu.valid = now_us_ - imu_heard_us_ <= kImuLost_us;
 }
 
 void ClimbBox::tell_monitor() {

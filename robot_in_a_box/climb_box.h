@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "can/cia402_bus.h"
+#include "climb/attitude.h"
 #include "climb_controller/control_cycle.h"
 #include "climb_controller/cycle_clock.h"
 #include "climb_controller/drive_layout.h"
@@ -35,6 +36,8 @@ struct ClimbBoxParams {
   climb_controller::CycleParams cycle = cycle_with_brakes();  ///< session id: from the seed
   climb_controller::DriveLayout drives;
   std::int64_t bus_latency_us = 300;  ///< of a frame
+  /// The attitude from accelerometer and gyroscope, as the live service has it; else the true one.
+  bool attitude_from_samples = false;
 };
 
 /// Sees what an observer outside the controller sees, in order of time.
@@ -102,6 +105,8 @@ class ClimbBox {
   Eigen::Quaterniond imu_turn = Eigen::Quaterniond::Identity();  ///< added to what it tells
 
   void watch(BoxWatcher* watcher) { watcher_ = watcher; }
+  /// Rungs come from there and no longer from truth; outlives the box.
+  void see_with(Eyes& eyes) { eyes_ = &eyes; }
   /// FNV-1a over all that crossed the bus: equal runs, equal numbers.
   std::uint64_t frame_hash() const { return frame_hash_; }
 
@@ -110,6 +115,7 @@ class ClimbBox {
   void millisecond();
   void observe();
   void step();
+  void read_imu();
   void tell_monitor();
   void end_when_possible();
   void hash(const simulator::CarriedFrame& carried);
@@ -121,6 +127,7 @@ class ClimbBox {
   MemoryChip chip_;
   gpio::Lines lines_;
   PerceivedLadder perception_;
+  Eyes* eyes_ = &perception_;
   can::Cia402Bus master_;
   climb_controller::ControlCycle cycle_;
   simulator::Monitor monitor_;
@@ -130,6 +137,8 @@ class ClimbBox {
   climb_controller::CycleClock clock_{climb_controller::CycleClockParams{}};
   std::int64_t hung_until_us_ = 0;
   std::int64_t imu_heard_us_ = -1'000'000'000;
+  bool attitude_from_samples_;
+  climb::Attitude attitude_{climb::AttitudeParams{}};
   climb_controller::CycleInbox inbox_;
   climb_controller::CycleReport report_;
   climb_controller::BoundedQueue<climb::OperatorCommand, 16> orders_;

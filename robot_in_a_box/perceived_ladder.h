@@ -10,7 +10,7 @@
 
 #include "base/rng.h"
 #include "climb_controller/perception_inbox.h"
-#include "simulator/plant/robot_plant.h"
+#include "robot_in_a_box/eyes.h"
 
 namespace robot_in_a_box {
 
@@ -35,7 +35,7 @@ enum class Nonsense : std::uint8_t {
   kBadCount,  ///< more rungs announced than told
 };
 
-class PerceivedLadder {
+class PerceivedLadder : public Eyes {
  public:
   PerceivedLadder(const PerceptionParams& params, std::uint64_t seed);
 
@@ -47,8 +47,12 @@ class PerceivedLadder {
   static constexpr std::int64_t kEpoch_us = 1'700'000'000'000'000;
   /// The last one, as it was handed over.
   const ladder_msgs::ladder_t& message() const { return message_; }
-  climb::LadderView view() const { return newest_.view(); }
-  std::int64_t received_us() const { return newest_.received_us; }
+  void look(std::int64_t now_us, simulator::RobotPlant& plant,
+            const climb_controller::CycleReport& told) override {
+    update(now_us, plant, told.output.pose.T_odom_body());
+  }
+  climb::LadderView view() const override { return newest_.view(); }
+  std::int64_t received_us() const override { return newest_.received_us; }
   std::int64_t num_refused() const { return inbox_.num_refused(); }
 
   bool silent = false;             ///< perception has stopped

@@ -28,6 +28,7 @@ ClimbBoxParams box_params(const PhysicalClimbParams& params, const simulator::Sc
   box.perception = params.perception;
   box.cycle = params.cycle;
   box.seed = params.seed;
+  box.attitude_from_samples = params.attitude_from_samples;
   box.mechanics = [&model](const simulator::PlantParams& plant) {
     return std::make_unique<simulator::PhysicsMechanics>(plant, model);
   };

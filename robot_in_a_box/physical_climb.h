@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct PhysicalClimbParams {
   climb_controller::CycleParams cycle = cycle_with_brakes();
   std::vector<WeakRung> weak_rungs;  ///< they look sound
   std::uint64_t seed = 1;
+  bool attitude_from_samples = false;  ///< ClimbBoxParams has it
 };
 
 enum class ClimbEnd : std::uint8_t {
@@ -52,6 +54,8 @@ class PhysicalClimb : private BoxWatcher {
   std::string reason() const;
 
   void run_s(double duration_s);
+  /// Called once per simulated second.
+  void each_second(std::function<void()> call) { each_second_ = std::move(call); }
   bool reach(climb::ControllerState state, double within_s);
   int num_held() const;
   double height_m() const { return box_.plant().T_world_body().translation().z(); }
@@ -62,7 +66,9 @@ class PhysicalClimb : private BoxWatcher {
   const simulator::PhysicsModel& model() const { return model_; }
 
  private:
-  void before(std::int64_t) override {}
+  void before(std::int64_t now_us) override {
+    if (each_second_ && now_us % 1'000'000 == 0) each_second_();
+  }
   void on_frame(const simulator::CarriedFrame&) override {}
   void on_truth(const simulator::PlantTruth& truth) override;
   void on_report(const climb_controller::CycleReport&) override {}
@@ -71,6 +77,7 @@ class PhysicalClimb : private BoxWatcher {
   simulator::PhysicsModel model_;
   ClimbBox box_;
   simulator::ClimbFigures figures_;
+  std::function<void()> each_second_;
 };
 
 }  // namespace robot_in_a_box

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ladder_replay: reads head frames, IMU and pose from a log, runs the perception chain over every
-// one of them as fast as it can, and writes clouds, topologies and rungs (and the recorded truth)
-// to another log. Two runs give the same bytes.
+// ladder_replay: reads head frames, IMU, pose and joints from a log, runs the perception chain over
+// every one of them as fast as it can, and writes clouds, topologies and rungs (and the recorded
+// truth) to another log. Two runs give the same bytes.
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -16,8 +16,9 @@
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kInputs = {"LADDER_TOF_0", "LADDER_TOF_1", "LADDER_TOF_2",
-                                                     "LADDER_TOF_3", "LADDER_IMU",   "LADDER_POSE"};
+constexpr std::array<std::string_view, 7> kInputs = {"LADDER_TOF_0", "LADDER_TOF_1", "LADDER_TOF_2",
+                                                     "LADDER_TOF_3", "LADDER_IMU",   "LADDER_POSE",
+                                                     "LADDER_CLIMB"};
 constexpr std::string_view kTruth = "LADDER_TRUTH";
 
 struct Arguments {
@@ -84,7 +85,8 @@ int main(int argc, char** argv) {
       "Runs the perception chain over a recorded log: every frame, as fast as possible, the same "
       "bytes each time."};
   Arguments arguments;
-  app.add_option("in", arguments.in, "LCM log with LADDER_TOF_*, LADDER_IMU, LADDER_POSE")
+  app.add_option("in", arguments.in,
+                 "LCM log with LADDER_TOF_*, LADDER_IMU, LADDER_POSE, LADDER_CLIMB")
       ->required();
   app.add_option("-o,--out", arguments.out, "LCM log to write")->required();
   app.add_option("-c,--config", arguments.config_files, "TOML file; later ones win");

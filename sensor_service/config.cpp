@@ -38,6 +38,19 @@ void read(ConfigTable table, tof::PoseParams& params) {
   table.read("max_extrapolation_s", params.max_extrapolation_s);
 }
 
+void read(ConfigTable table, tof::LimbParams& params) {
+  table.read("drop", params.drop);
+  table.read("hip_x_m", params.hip_x_m);
+  table.read("hip_y_m", params.hip_y_m);
+  table.read("abduction_m", params.abduction_m);
+  table.read("thigh_m", params.thigh_m);
+  table.read("shank_m", params.shank_m);
+  table.read("wrist_rad", params.wrist_rad);
+  table.read("thigh_radius_m", params.thigh_radius_m);
+  table.read("shank_radius_m", params.shank_radius_m);
+  table.read("margin_m", params.margin_m);
+}
+
 void read(ConfigTable table, sources::CameraParams& params) {
   table.read("depth_kind", params.depth_kind,
              {{"z", tof::DepthKind::kZ}, {"radial", tof::DepthKind::kRadial}});
@@ -102,6 +115,7 @@ tof::TofParams read_params(ConfigTable table) {
   read(table.table("heads"), params.heads);
   read(table.table("gravity"), params.gravity);
   read(table.table("poses"), params.poses);
+  read(table.table("limbs"), params.limbs);
   table.require(check(params));
   return params;
 }

@@ -51,6 +51,15 @@ tof::Pose to_pose(const ladder_msgs::pose_t& message) {
   return to_pose(message.p_odom_body_m, message.q_odom_body);
 }
 
+std::optional<tof::JointAngles> to_joints(const ladder_msgs::climb_state_t& message) {
+  tof::JointAngles angles_rad{};
+  for (int joint = 0; joint < tof::kNumJoints; ++joint) {
+    if (message.is_heard[joint] == 0) return std::nullopt;
+    angles_rad[static_cast<std::size_t>(joint)] = static_cast<double>(message.measured_rad[joint]);
+  }
+  return angles_rad;
+}
+
 void to_message(const tof::DepthFrame& frame, ladder_msgs::tof_frame_t& m) {
   m.utime = frame.utime_us;
   m.seq = frame.seq;

@@ -22,6 +22,7 @@ namespace channels = runtime::channels;
 
 constexpr std::int64_t kSilentAfterUs = 1'000'000;
 constexpr std::size_t kMaxWaitingPoses = 256;
+constexpr std::size_t kMaxWaitingJoints = 64;
 enum Stage : std::size_t { kFuse, kPublish };
 
 class SensorService final : public runtime::Service, private sources::FrameSink {
@@ -32,6 +33,7 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
         sources_(sources::make_device_sources(devices_, ready_)),
         owns_devices_(!sources_.empty()),
         poses_(context.bus.queue(channels::kPose, kMaxWaitingPoses)),
+        joints_(context.bus.queue(channels::kClimb, kMaxWaitingJoints)),
         fusion_(read_params(context.config)) {
     if (!owns_devices_) sources_.push_back(std::make_unique<LcmSource>(context.bus));
   }
@@ -39,6 +41,9 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
   void step(const base::Now& now) noexcept override {
     while (const ladder_msgs::pose_t* pose = poses_.take(now.utime_us)) {
       fusion_.add_pose(pose->utime, to_pose(*pose));
+    }
+    while (const ladder_msgs::climb_state_t* climb = joints_.take(now.utime_us)) {
+      if (const auto angles_rad = to_joints(*climb)) fusion_.add_joints(climb->utime, *angles_rad);
     }
     now_us_ = now.monotonic_us;
     for (const auto& source : sources_) source->poll(now, *this);
@@ -133,6 +138,7 @@ class SensorService final : public runtime::Service, private sources::FrameSink 
   std::vector<std::unique_ptr<sources::FrameSource>> sources_;
   bool owns_devices_;  ///< and publishes what they deliver; else all comes over LCM
   runtime::Queue<ladder_msgs::pose_t>& poses_;
+  runtime::Queue<ladder_msgs::climb_state_t>& joints_;  ///< of the own limbs
   tof::Fusion fusion_;
   ladder_msgs::point_cloud_t message_{};
   ladder_msgs::tof_frame_t frame_message_{};

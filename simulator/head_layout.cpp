@@ -20,13 +20,17 @@ HeadLayout heads_still() {
 }
 
 HeadLayout heads_climb() {
-  // On the ladder body x points up along it and -z at it. The splayed heads look 45 deg up and 25
-  // deg aside: elevation asin(-cos 45 cos 25), azimuth atan(tan 25 / sin 45).
+  // On the ladder body x points up along it and -z at it: pitch -90 looks straight at the rungs.
+  // Together they see from 0.32 m below the body's origin to 1.0 m above it, without a gap where a
+  // claw may want to grasp.
   return {{
-      {{0.30, 0.0, 0.0}, 0.0, -45.0, true},
-      {{0.30, 0.0, 0.02}, 0.0, -30.0},
-      {{0.30, 0.06, 0.0}, 33.40, -39.86, true},
-      {{0.30, -0.06, 0.0}, -33.40, -39.86, true},
+      {.p_body_head_m = {0.30, 0.0, 0.0}, .pitch_deg = -45.0},
+      {.p_body_head_m = {-0.44, 0.0, 0.0}, .pitch_deg = -45.0},
+      {.p_body_head_m = {0.30, 0.06, 0.0}, .pitch_deg = -70.0, .portrait = true, .splay_deg = 15.0},
+      {.p_body_head_m = {0.30, -0.06, 0.0},
+       .pitch_deg = -70.0,
+       .portrait = true,
+       .splay_deg = -15.0},
   }};
 }
 
@@ -40,9 +44,12 @@ HeadLayout head_layout_from_string(std::string_view name) {
 Eigen::Isometry3d T_body_head(const HeadMount& mount) {
   const double yaw = mount.yaw_deg * std::numbers::pi / 180.0;
   const double pitch = mount.pitch_deg * std::numbers::pi / 180.0;
-  const Vector3d forward(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw),
-                         std::sin(pitch));
-  const Vector3d right(std::sin(yaw), -std::cos(yaw), 0.0);
+  const double splay = mount.splay_deg * std::numbers::pi / 180.0;
+  const Vector3d ahead(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw),
+                       std::sin(pitch));
+  const Vector3d aside(-std::sin(yaw), std::cos(yaw), 0.0);  // to the left
+  const Vector3d forward = std::cos(splay) * ahead + std::sin(splay) * aside;
+  const Vector3d right = std::sin(splay) * ahead - std::cos(splay) * aside;
   const Vector3d down = forward.cross(right);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = mount.p_body_head_m;

@@ -9,14 +9,14 @@ void RungVisibility::clear() {
   rungs_.assign(rungs_.size(), Seen{});
 }
 
-void RungVisibility::add(const World& world, const HeadRenderer& head,
+void RungVisibility::add(const LabelledRungs& rungs, const HeadRenderer& head,
                          const Eigen::Isometry3d& T_world_body, const HeadImage& image) {
   const Eigen::Isometry3d T_world_head = T_world_body * head.T_body_head_true();
   for (std::size_t i = 0; i < image.clean_geom.size(); ++i) {
     const int geom = image.clean_geom[i];
-    if (geom < 0 || world.rung_of_geom()[geom] < 0) continue;
-    const int index = world.rung_of_geom()[geom];
-    const Rung& rung = world.scene().rungs[index];
+    if (geom < 0 || rungs.rung_of_geom[static_cast<std::size_t>(geom)] < 0) continue;
+    const int index = rungs.rung_of_geom[static_cast<std::size_t>(geom)];
+    const Rung& rung = rungs.scene.rungs[static_cast<std::size_t>(index)];
     ++rungs_[index].hits;
     // A pixel at the rim may hit with its extra rays only; its neighbours stand for the place.
     if (!std::isfinite(image.true_range_m[i])) continue;

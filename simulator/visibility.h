@@ -6,9 +6,15 @@
 #include <vector>
 
 #include "simulator/head_renderer.h"
-#include "simulator/world.h"
+#include "simulator/scene.h"
 
 namespace simulator {
+
+/// True rungs, and which geom of the rendered model belongs to which of them (-1 = none).
+struct LabelledRungs {
+  const Scene& scene;
+  const std::vector<int>& rung_of_geom;
+};
 
 class RungVisibility {
  public:
@@ -18,8 +24,8 @@ class RungVisibility {
 
   void clear();
   /// Adds one head's newest frame.
-  void add(const World& world, const HeadRenderer& head, const Eigen::Isometry3d& T_world_body,
-           const HeadImage& image);
+  void add(const LabelledRungs& rungs, const HeadRenderer& head,
+           const Eigen::Isometry3d& T_world_body, const HeadImage& image);
 
   int hits(std::size_t rung) const { return rungs_[rung].hits; }
   float visible_share(std::size_t rung) const {

@@ -4,12 +4,14 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "tof/self_filter.h"
 
 namespace tof {
 namespace {
 
 constexpr int kImuStream = kNumHeads;
 constexpr int kPoseStream = kNumHeads + 1;
+constexpr int kJointStream = kNumHeads + 2;
 
 double seconds(std::int64_t interval_us) {
   return static_cast<double>(interval_us) * 1e-6;
@@ -22,6 +24,7 @@ Fusion::Fusion(const TofParams& params)
       filter_(params.filter),
       schedule_(params.heads),
       odometry_(params.poses),
+      joints_(params.poses),
       gravity_(params.gravity, params.poses) {
   CHECK(check(params).empty(), "parameters are checked by whoever reads them");
   const auto max_points = static_cast<std::size_t>(params.max_points);
@@ -67,6 +70,16 @@ bool Fusion::add_pose(std::int64_t utime_us, const Pose& T_odom_body) {
   return is_taken;
 }
 
+bool Fusion::add_joints(std::int64_t utime_us, const JointAngles& angles_rad) {
+  constexpr double kLimit_rad = 4.0;  // of any joint; limbs_of() is exact within
+  for (const double angle_rad : angles_rad) {
+    if (!(angle_rad >= -kLimit_rad && angle_rad <= kLimit_rad)) return false;
+  }
+  if (utime_us <= 0) return false;
+  follow_time(kJointStream, utime_us);
+  return joints_.push(utime_us, angles_rad);
+}
+
 /// Back within one stream, or far ahead of all of them, is a new recording. (Back against another
 /// stream is not: one head may lag.)
 void Fusion::follow_time(int stream, std::int64_t utime_us) {
@@ -87,6 +100,7 @@ void Fusion::follow_time(int stream, std::int64_t utime_us) {
 void Fusion::reset() {
   schedule_.reset();
   odometry_.clear();
+  joints_.clear();
   gravity_.clear();
   gravity_frame_.clear();
   stream_utime_us_.fill(0);
@@ -98,9 +112,21 @@ void Fusion::store(const DepthFrame& frame) {
   filter_.apply(frame, image.filtered);
   image.rays.fit(frame);
   image.frame = frame;
+  if (params_.limbs.drop) drop_own_limbs(image);
   image.frame.depth_mm = {};
   image.frame.confidence = {};
   schedule_.put(frame.head);
+}
+
+/// Angles of the frame's own time, from messages that come more seldom than frames.
+void Fusion::drop_own_limbs(HeadImage& image) {
+  const auto bracket = joints_.at(image.frame.utime_us);
+  if (!bracket) return;
+  JointAngles angles_rad;
+  for (std::size_t i = 0; i < angles_rad.size(); ++i) {
+    angles_rad[i] = (*bracket->a)[i] + bracket->fraction * ((*bracket->b)[i] - (*bracket->a)[i]);
+  }
+  drop_limbs(image.frame, image.rays, limbs_of(params_.limbs, angles_rad), image.filtered);
 }
 
 void Fusion::emit() {

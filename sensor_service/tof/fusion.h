@@ -14,6 +14,7 @@
 #include "tof/filter.h"
 #include "tof/gravity.h"
 #include "tof/head_schedule.h"
+#include "tof/limbs.h"
 #include "tof/params.h"
 #include "tof/pose_buffer.h"
 #include "tof/projection.h"
@@ -46,6 +47,8 @@ class Fusion {
   /// False: rejected and counted.
   bool add_imu(const ImuSample& sample);
   bool add_pose(std::int64_t utime_us, const Pose& T_odom_body);
+  /// The robot's own joints; all must be known.
+  bool add_joints(std::int64_t utime_us, const JointAngles& angles_rad);
 
   HeadState head_state(int head) const { return schedule_.state(head); }
   const HeadCounters& head_counters(int head) const { return schedule_.counters(head); }
@@ -68,6 +71,7 @@ class Fusion {
 
   void follow_time(int stream, std::int64_t utime_us);
   void store(const DepthFrame& frame);
+  void drop_own_limbs(HeadImage& image);
   void emit();
   void write_points(Cloud& cloud);
   BodyPose body_pose(std::int64_t utime_us);
@@ -78,13 +82,14 @@ class Fusion {
   Filter filter_;
   HeadSchedule schedule_;
   PoseBuffer odometry_;
+  TimeHistory<JointAngles> joints_;
   Gravity gravity_;
   GravityFrame gravity_frame_;
   CloudWriter writer_;
   std::array<HeadImage, kNumHeads> images_;
   std::array<Cloud, 2> clouds_;
   std::size_t num_clouds_ = 0;
-  std::array<std::int64_t, kNumHeads + 2> stream_utime_us_{};  ///< of each input; 0 = none yet
+  std::array<std::int64_t, kNumHeads + 3> stream_utime_us_{};  ///< of each input; 0 = none yet
   std::int64_t last_cloud_utime_us_ = 0;
   FusionCounters counters_;
 };

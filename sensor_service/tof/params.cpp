@@ -47,11 +47,23 @@ std::string check_poses(const PoseParams& p) {
   return "";
 }
 
+std::string check_limbs(const LimbParams& p) {
+  for (const double length_m : {p.hip_x_m, p.hip_y_m, p.abduction_m, p.thigh_m, p.shank_m}) {
+    if (!within(length_m, 0.0, 2.0)) return "limbs: every length must be 0..2 m";
+  }
+  for (const double radius_m : {p.thigh_radius_m, p.shank_radius_m, p.margin_m}) {
+    if (!within(radius_m, 0.0, 0.3)) return "limbs: radii and margin_m must be 0..0.3";
+  }
+  if (!within(p.wrist_rad, -1.6, 1.6)) return "limbs.wrist_rad must be -1.6..1.6";
+  return "";
+}
+
 }  // namespace
 
 std::string check(const TofParams& params) {
   const std::string faults[] = {check_filter(params.filter), check_heads(params.heads),
-                                check_gravity(params.gravity), check_poses(params.poses)};
+                                check_gravity(params.gravity), check_poses(params.poses),
+                                check_limbs(params.limbs)};
   for (const std::string& fault : faults) {
     if (!fault.empty()) return fault;
   }

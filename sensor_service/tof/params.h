@@ -46,8 +46,23 @@ struct PoseParams {
   double max_extrapolation_s = 0.1;  ///< beyond the newest (or before the oldest) pose
 };
 
+/// The robot's own limbs, which its heads see. Lengths as in climb.robot.
+struct LimbParams {
+  bool drop = true;  ///< pixels on them, once their joint angles are known
+  double hip_x_m = 0.25;
+  double hip_y_m = 0.10;
+  double abduction_m = 0.05;
+  double thigh_m = 0.22;
+  double shank_m = 0.24;
+  double wrist_rad = 0.67;
+  double thigh_radius_m = 0.020;
+  double shank_radius_m = 0.012;
+  double margin_m = 0.008;  ///< noise, mounting and the age of the angles
+};
+
 struct TofParams {
   FilterParams filter;
+  LimbParams limbs;
   HeadParams heads;
   GravityParams gravity;
   PoseParams poses;

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rungs stay where they were. The front heads see a rung well while it passes them; under the belly
+// the robot's own legs hide it, and there the rear claws want it. A rung that was trusted and sound
+// is therefore remembered for a while, in odom; what is seen of it now moves it, and damage seen
+// now counts. Ahead of the robot nothing is remembered: a front claw grasps what is seen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "climb_controller/perception_inbox.h"
+
+namespace climb_controller {
+
+struct RungMemoryParams {
+  double memory_s = 90.0;     ///< 0 = nothing is remembered (own: two rungs take 60 s)
+  double ahead_m = 0.30;      ///< body x from which on only what is seen counts
+  double same_rung_m = 0.05;  ///< nearer axes are the same rung (own: a fifth of a spacing)
+};
+
+/// "" or the violated relation, naming the field.
+std::string check(const RungMemoryParams& params);
+
+class RungMemory {
+ public:
+  explicit RungMemory(const RungMemoryParams& params) : params_(params) {
+    remembered_.reserve(kMaxRungs);
+  }
+
+  /// Learns from what is seen and adds to it what is remembered. `T_odom_body`: as estimated now.
+  void complete(std::int64_t now_us, const Eigen::Isometry3d& T_odom_body, RungsSnapshot& snapshot);
+
+ private:
+  static constexpr std::size_t kMaxRungs = 32;
+  struct Remembered {
+    climb::RungView rung;
+    std::array<climb::StretchView, 4> stretches;  ///< what exceeds it is forgotten
+    std::size_t num_stretches = 0;
+    double graspable_m = 0.0;  ///< all stretches together
+    std::int64_t seen_us = 0;
+  };
+  template <class IsAhead>
+  void learn(std::int64_t now_us, int index, const IsAhead& is_ahead,
+             const RungsSnapshot& snapshot);
+  void add(const Remembered& remembered, RungsSnapshot& snapshot) const;
+  bool is_same(const climb::RungView& a, const climb::RungView& b) const;
+
+  RungMemoryParams params_;
+  std::vector<Remembered> remembered_;
+  std::int64_t confirmed_us_ = -1'000'000'000'000;
+};
+
+}  // namespace climb_controller

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// ladder_climbs: whole climbs in full fidelity and virtual time, several at once in forked copies.
+// A seed says everything. Writes what came of each as one JSON line. Behind scripts/climbs.
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <lcm/lcm-cpp.hpp>
+
+#include "robot_in_a_box/fork_pool.h"
+#include "robot_in_a_box/full_climb.h"
+
+namespace {
+
+using robot_in_a_box::ClimbEnd;
+using robot_in_a_box::FullClimb;
+using robot_in_a_box::FullClimbParams;
+
+struct Arguments {
+  int num_plain = 0;
+  int num_damaged = 0;
+  std::uint64_t first_seed = 1;
+  int num_rungs = 13;
+  int num_jobs = 0;
+  double max_s = 900.0;
+  std::string json_path;
+  std::string log_path;
+  double log_s = 0.0;
+  std::vector<std::string> config_files;
+  std::vector<std::string> overrides;
+  bool trace = false;
+};
+
+/// What is wrong with a ladder.
+constexpr std::array<const char*, 6> kDamages = {"plain",  "missing", "bent",
+                                                 "broken", "loose",   "weak"};
+
+struct Task {
+  std::uint64_t seed = 1;
+  bool damaged = false;
+  std::string damage = "plain";
+  FullClimbParams params;
+};
+
+/// Damaged ones take the kinds in turn; a loose rung comes off when a claw loads it, a weak one
+/// bears a hanging limb and breaks in the pull test or later.
+Task task_of(const Arguments& arguments, std::uint64_t seed, bool damaged) {
+  Task task;
+  base::Rng rng(seed, damaged ? 12 : 11);
+  task.seed = seed;
+  task.damaged = damaged;
+  if (damaged) task.damage = kDamages[1 + seed % (kDamages.size() - 1)];
+  simulator::SceneParams& scene = task.params.climb.scene;
+  scene.seed = seed;
+  scene.num_rungs = arguments.num_rungs;
+  scene.spacing_m = damaged ? 0.25 + 0.10 * rng.uniform() : 0.30;
+  const int rung =
+      4 +
+      static_cast<int>(rng.below(static_cast<std::uint32_t>(std::max(1, arguments.num_rungs - 6))));
+  if (task.damage == "missing") scene.kind = simulator::SceneKind::kMissing;
+  if (task.damage == "bent") scene.kind = simulator::SceneKind::kBent;
+  if (task.damage == "broken") scene.kind = simulator::SceneKind::kBroken;
+  if (scene.kind != simulator::SceneKind::kPlain) scene.damaged_rung = rung;
+  if (task.damage == "loose") task.params.climb.weak_rungs.push_back({rung, 5.0});
+  if (task.damage == "weak") {
+    task.params.climb.weak_rungs.push_back({rung, 40.0 + 40.0 * rng.uniform()});
+  }
+  task.params.climb.seed = seed;
+  task.params.perception.heads.seed = seed;
+  return task;
+}
+
+std::string json_line(const Task& task, ClimbEnd end, FullClimb& full, double wall_s) {
+  const simulator::Figures& f = full.climb().figures();
+  char text[1200];
+  std::snprintf(
+      text, sizeof text,
+      "{\"seed\": %llu, \"damage\": \"%s\", \"spacing_m\": %.3f, \"end\": \"%s\", \"reason\": "
+      "\"%s\", \"rungs_climbed\": %d, \"falls\": %d, \"grasps_tried\": %d, \"grasps_failed\": %d, "
+      "\"unsafe_grasps\": %d, \"min_support\": %d, \"seconds\": %.1f, \"peak_joint_torque_Nm\": "
+      "%.1f, \"peak_grip_N\": %.0f, \"pose_drift_mm\": %.1f, \"violations\": %zu, \"wall_s\": "
+      "%.1f}",
+      static_cast<unsigned long long>(task.seed), task.damage.c_str(),
+      task.params.climb.scene.spacing_m, name(end), full.climb().reason().c_str(), f.rungs_climbed,
+      f.falls, f.grasps_tried, f.grasps_failed, f.num_unsafe_grasps, f.min_support, f.seconds,
+      f.peak_joint_torque_Nm, f.peak_grip_N, f.pose_drift_mm,
+      full.climb().box().monitor().violations().size(), wall_s);
+  return text;
+}
+
+/// Every message of the climb into an LCM log, up to log_s.
+void log_into(lcm::LogFile& log, double log_s, FullClimb& full) {
+  full.eyes().log_to([&log, log_s, &full](const char* channel, const void* bytes,
+                                          std::size_t num_bytes, std::int64_t utime_us) {
+    if (log_s > 0.0 && 1e-6 * static_cast<double>(full.climb().box().now_us()) > log_s) return;
+    lcm::LogEvent event{};
+    event.timestamp = utime_us;
+    event.channel = channel;
+    event.data = const_cast<void*>(bytes);  // NOLINT: LCM's structure has no const
+    event.datalen = static_cast<std::int32_t>(num_bytes);
+    log.writeEvent(&event);
+  });
+}
+
+void trace(FullClimb& full) {
+  const robot_in_a_box::ClimbBox& box = full.climb().box();
+  const climb::ControllerOutput& out = box.report().output;
+  std::printf("%7.1f s %-15s %-16s %-22s z %.3f m", 1e-6 * static_cast<double>(box.now_us()),
+              climb::name(out.state), climb::name(out.reason), climb::name(out.refusal),
+              full.climb().height_m());
+  for (const climb::Leg leg : climb::kLegs) {
+    std::printf("  %s:%d", climb::name(out.limbs[leg]), box.plant().leg(leg).rung_index);
+  }
+  const climb::LadderView view = full.eyes().view();
+  std::printf("  %s", view.confirmed ? "ladder:" : "no ladder:");
+  for (const climb::RungView& rung : view.rungs) {
+    std::printf(" %.2f%s", rung.end0_m.z(), rung.damaged ? "!" : (rung.trusted ? "" : "?"));
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+std::string run(const Arguments& arguments, const Task& task) {
+  const auto begin = std::chrono::steady_clock::now();
+  FullClimb full(task.params, runtime::Config::load(arguments.config_files, arguments.overrides));
+  std::optional<lcm::LogFile> log;
+  if (!arguments.log_path.empty()) {
+    log.emplace(arguments.log_path, "w");
+    log_into(*log, arguments.log_s, full);
+  }
+  if (arguments.trace) full.climb().each_second([&full] { trace(full); });
+  full.climb().run_s(3.0);
+  ClimbEnd end = ClimbEnd::kFault;
+  if (full.climb().hang()) end = full.climb().climb(true, arguments.max_s);
+  const double wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return json_line(task, end, full, wall_s);
+}
+
+void parse(CLI::App& app, Arguments& arguments) {
+  app.add_option("--plain", arguments.num_plain, "so many plain ladders");
+  app.add_option("--damaged", arguments.num_damaged, "so many damaged ones");
+  app.add_option("--first-seed", arguments.first_seed, "of either sort");
+  app.add_option("--rungs", arguments.num_rungs, "of each ladder")->check(CLI::Range(4, 16));
+  app.add_option("--jobs", arguments.num_jobs, "climbs at once; 0 = one per processor");
+  app.add_option("--max-s", arguments.max_s, "simulated seconds, then a climb is given up");
+  app.add_option("--json-lines", arguments.json_path, "append one line per climb");
+  app.add_option("--log", arguments.log_path, "every message of the last climb, as an LCM log");
+  app.add_option("--log-s", arguments.log_s, "only up to this simulated time");
+  app.add_option("-c,--config", arguments.config_files, "TOML file; later ones win");
+  app.add_option("--set", arguments.overrides, "table.key=value")->allow_extra_args(false);
+  app.add_flag("--trace", arguments.trace, "one line per simulated second");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Climbs of the whole robot in virtual time.", "ladder_climbs");
+  Arguments arguments;
+  parse(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  std::ofstream lines(arguments.json_path, std::ios::app);
+  const auto tell = [&](bool ended_well, const std::string& line) {
+    const std::string told = ended_well ? line : "{\"end\": \"crashed\"}";
+    std::printf("%s\n", told.c_str());
+    std::fflush(stdout);
+    if (lines) lines << told << std::endl;
+  };
+  try {
+    runtime::Config::load(arguments.config_files, arguments.overrides);
+    robot_in_a_box::ForkPool pool(arguments.num_jobs);
+    for (int i = 0; i < arguments.num_plain + arguments.num_damaged; ++i) {
+      const bool damaged = i >= arguments.num_plain;
+      const int index = damaged ? i - arguments.num_plain : i;
+      const Task task =
+          task_of(arguments, arguments.first_seed + static_cast<std::uint64_t>(index), damaged);
+      pool.run([&arguments, task] { return run(arguments, task); }, tell);
+    }
+    pool.finish();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ladder_climbs: %s\n", error.what());
+    return 2;
+  }
+}

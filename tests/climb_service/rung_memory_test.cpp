@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rungs are remembered below the head of the robot, and only there, and only sound ones.
+#include "climb_controller/rung_memory.h"
+
+#include <gtest/gtest.h>
+
+namespace climb_controller {
+namespace {
+
+constexpr std::int64_t kSecond_us = 1'000'000;
+
+class RungMemoryTest : public ::testing::Test {
+ protected:
+  RungMemoryTest() {
+    snapshot_.reserve();
+    // The body's x points up.
+    T_odom_body_.linear() << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+  }
+  void see(double height_m, bool trusted = true, bool damaged = false) {
+    climb::RungView rung;
+    rung.id = 5;
+    rung.trusted = trusted;
+    rung.damaged = damaged;
+    rung.confidence = 1.0;
+    rung.end0_m = {0.28, 0.2, height_m};
+    rung.end1_m = {0.28, -0.2, height_m};
+    rung.radius_m = 0.014;
+    snapshot_.rungs.assign(1, rung);
+    snapshot_.stretches.clear();
+    if (trusted && !damaged) snapshot_.stretches.push_back({0, 0.05, 0.35});
+    snapshot_.confirmed = trusted;
+  }
+  void see_nothing() {
+    snapshot_.rungs.clear();
+    snapshot_.stretches.clear();
+    snapshot_.confirmed = false;
+  }
+  void complete(double at_s, double body_height_m) {
+    T_odom_body_.translation().z() = body_height_m;
+    memory_.complete(static_cast<std::int64_t>(at_s * 1e6) + kSecond_us, T_odom_body_, snapshot_);
+  }
+  RungMemory memory_{RungMemoryParams{}};
+  RungsSnapshot snapshot_;
+  Eigen::Isometry3d T_odom_body_ = Eigen::Isometry3d::Identity();
+};
+
+/// A sound rung that is no longer seen is offered once it lies under the belly, at its place.
+TEST_F(RungMemoryTest, KeepsWhatTheBellyHides) {
+  see(0.6);
+  complete(0.0, 0.0);
+  see_nothing();
+  complete(10.0, 0.5);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_TRUE(snapshot_.rungs[0].trusted);
+  EXPECT_DOUBLE_EQ(snapshot_.rungs[0].end0_m.z(), 0.6);
+  ASSERT_EQ(snapshot_.stretches.size(), 1U);
+  EXPECT_EQ(snapshot_.stretches[0].rung_index, 0);
+  EXPECT_TRUE(snapshot_.confirmed);
+}
+
+/// Ahead of the robot nothing is remembered.
+TEST_F(RungMemoryTest, ForgetsAhead) {
+  see(0.6);
+  complete(0.0, 0.0);
+  see_nothing();
+  complete(0.1, 0.1);
+  EXPECT_TRUE(snapshot_.rungs.empty());
+  EXPECT_FALSE(snapshot_.confirmed);
+}
+
+/// After memory_s it is gone; a clock that stands adds nothing twice.
+TEST_F(RungMemoryTest, ForgetsInTime) {
+  see(0.6);
+  complete(0.0, 0.5);
+  complete(0.0, 0.5);
+  EXPECT_EQ(snapshot_.rungs.size(), 1U);
+  see_nothing();
+  complete(91.0, 0.5);
+  EXPECT_TRUE(snapshot_.rungs.empty());
+}
+
+/// What was never trusted, or was damaged, is not remembered.
+TEST_F(RungMemoryTest, LearnsSoundRungsOnly) {
+  see(0.6, true, true);
+  complete(0.0, 0.0);
+  see(0.6, false);
+  complete(0.1, 0.0);
+  see_nothing();
+  complete(1.0, 0.5);
+  EXPECT_TRUE(snapshot_.rungs.empty());
+}
+
+/// Damage that is seen now counts, wherever the rung is.
+TEST_F(RungMemoryTest, DamageSeenCounts) {
+  see(0.6);
+  complete(0.0, 0.0);
+  see(0.6, true, true);
+  complete(1.0, 0.5);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_TRUE(snapshot_.rungs[0].damaged);
+  EXPECT_TRUE(snapshot_.stretches.empty());
+}
+
+/// A rung that is seen but not trusted any more takes its trust from memory and its place from
+/// what is seen.
+TEST_F(RungMemoryTest, PlaceIsNews) {
+  see(0.60);
+  complete(0.0, 0.0);
+  see(0.61, false);
+  complete(1.0, 0.5);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_TRUE(snapshot_.rungs[0].trusted);
+  EXPECT_NEAR(snapshot_.rungs[0].end0_m.z(), 0.61, 1e-9);
+}
+
+}  // namespace
+}  // namespace climb_controller
