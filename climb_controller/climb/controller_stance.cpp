@@ -76,14 +76,16 @@ void Controller::work_disarming(const ControllerInput& input) {
   bool all_hold = true;
   for (const LimbCycle& limb : limbs_) all_hold = all_hold && is_confirmed(limb.state());
   if (all_hold) {
-    // Without feed-forward only the dock keeps the body up where it is.
-    if (in_state_s_ < params_.torque_ramp_s + params_.climb.motion.settle_s) return;
+    // Position loops bear what the feed-forward lets go. Now legs give way: only the dock keeps the
+    // body up where it is.
     if (has_sagged()) {
       take(E::kHold);
       return;
     }
+    for (LimbCycle& limb : limbs_) limb.give_way();
+    if (in_state_s_ < params_.torque_ramp_s + params_.climb.motion.settle_s) return;
   }
-  // Position loops hold a body without sagging: only the torques tell that no dock is there.
+  // Legs that stick hold a body without sagging: then the torques tell that no dock is there.
   if (are_claws_loaded(input)) {
     take(E::kHold);
     return;

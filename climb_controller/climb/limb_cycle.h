@@ -94,6 +94,9 @@ class LimbCycle {
   /// While LOADED the body may be moved: targets come from outside.
   void follow(const JointSample& sample, double rate);
 
+  /// While LOADED, in the dock: the leg lets go, little by little, what it bears.
+  void give_way();
+
   LimbState state() const { return state_; }
   const LimbTarget& target() const { return target_; }
   const GraspConfirmation& confirmation() const { return confirmation_; }

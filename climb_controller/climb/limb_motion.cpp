@@ -11,6 +11,7 @@ namespace climb {
 namespace {
 
 constexpr double kOpenWindow_rad = 0.1;
+constexpr double kGiveWayPart = 0.03;
 constexpr double kYieldPart = 0.3;  ///< of what pushes it aside, each cycle
 
 bool in(double value, double low, double high) {  // false for NaN
@@ -40,6 +41,12 @@ void LimbCycle::follow(const JointSample& sample, double rate) {
   target_.angles_rad = sample.angles_rad;
   target_.velocity_rad_s = rate * sample.velocity_rad_s;
   move_joints(sample.angles_rad, 0.0);
+}
+
+void LimbCycle::give_way() {
+  if (state_ != LimbState::kLoaded) return;
+  const LegAngles measured_rad = kinematics_.clamped(leg_, input_.angles_rad);
+  stand_at(target_.angles_rad + kGiveWayPart * (measured_rad - target_.angles_rad));
 }
 
 void LimbCycle::move_joints(const LegAngles& to_rad, double min_duration_s) {

@@ -56,9 +56,22 @@ TEST(PhysicalClimb, ClimbsToTheTopAndBackIntoTheDock) {
   EXPECT_LT(figures.peak_joint_torque_Nm, 30.0);
   EXPECT_LT(figures.peak_grip_N, 186.0);  // tears a claw off
   ASSERT_EQ(climb.climb(false, 180.0), ClimbEnd::kDock) << climb.reason();
+  EXPECT_TRUE(climb.back_into_dock()) << climb.reason();
   EXPECT_EQ(figures.falls, 0);
   EXPECT_GE(figures.min_support, 3);
   expect_no_violation(climb);
+}
+
+/// Ordered to disarm where no dock has come, it notices and goes on holding.
+TEST(PhysicalClimb, DoesNotLetGoWithoutTheDock) {
+  PhysicalClimb climb(ladder(5));
+  ASSERT_TRUE(climb.hang()) << climb.reason();
+  const double before_m = climb.height_m();
+  climb.box().order(climb::Order::kDisarm);
+  climb.run_s(3.0);
+  EXPECT_EQ(climb.box().state(), ControllerState::kHold) << climb.reason();
+  EXPECT_EQ(climb.num_held(), simulator::kNumLegs);
+  EXPECT_LT(before_m - climb.height_m(), 0.012);
 }
 
 struct Break {
