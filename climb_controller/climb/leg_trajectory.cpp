@@ -75,7 +75,13 @@ LineSample Line::at(double t_s) const {
 }
 
 LegLimits leg_limits(const LegKinematics& kinematics, Leg leg) {
-  return {kinematics.limits(leg, 0), kinematics.limits(leg, 1), kinematics.limits(leg, 2)};
+  LegLimits limits = {kinematics.limits(leg, 0), kinematics.limits(leg, 1),
+                      kinematics.limits(leg, 2)};
+  for (JointLimits& joint : limits) {
+    const double stoppable_rad_s = kMaxStop_s * joint.max_acceleration_rad_s2;
+    joint.max_velocity_rad_s = std::min(joint.max_velocity_rad_s, stoppable_rad_s);
+  }
+  return limits;
 }
 
 LegAngles clamp_step(const LegAngles& last_rad, const LegAngles& wish_rad, const LegLimits& limits,

@@ -77,7 +77,11 @@ class Line {
   bool valid_ = true;
 };
 
-/// The limits of a leg's three joints.
+/// A stop ends within this time (contract), so no path is planned faster than joints may stop in
+/// it.
+inline constexpr double kMaxStop_s = 0.150;
+
+/// The limits of a leg's three joints, for planning.
 LegLimits leg_limits(const LegKinematics& kinematics, Leg leg);
 
 /// The last cut before a command: at most v dt from `last`, within the joint limits. A wish that is

@@ -45,6 +45,37 @@ TEST(PathClock, StopsInTheShortestTime) {
   EXPECT_NEAR(clock.path_time_s(), 0.05, 1e-6);
 }
 
+/// Cycles from the stop at `stop_s` until the path stands.
+template <typename Path>
+int num_cycles_to_stand(const Path& path, double stop_s) {
+  PathClock clock;
+  while (clock.path_time_s() < stop_s) clock.advance(kCycle_s, false, path, kLimits);
+  int num_cycles = 0;
+  for (; !clock.stands() && num_cycles < 100; ++num_cycles) {
+    clock.advance(kCycle_s, true, path, kLimits);
+  }
+  return num_cycles;
+}
+
+// However fast a path was asked for, it stands 150 ms after a stop (one cycle rounding), wherever
+// it is stopped: what joints cannot stop from in that time is not planned.
+TEST(PathClock, StandsWithinTheContractsTime) {
+  base::Rng rng(41);
+  int num_lines = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const LegAngles from = climb_tests::random_angles(rng, kKinematics, kFrontLeft);
+    const LegAngles to = climb_tests::random_angles(rng, kKinematics, kFrontLeft);
+    const JointSegment segment(from, to, kLimits);
+    ASSERT_LE(num_cycles_to_stand(segment, segment.duration_s() * rng.uniform()), 16) << i;
+    const FootLine line(kKinematics, kFrontLeft, kKinematics.foot_m(kFrontLeft, from),
+                        kKinematics.foot_m(kFrontLeft, to), {2.0, 50.0});
+    if (line.reach() != Reach::kReachable) continue;
+    ++num_lines;
+    ASSERT_LE(num_cycles_to_stand(line, line.duration_s() * rng.uniform()), 16) << i;
+  }
+  EXPECT_GT(num_lines, 50);
+}
+
 // Stopped anywhere on random segments, the joints stand within v/a, never pass the segment's end,
 // never turn back, and no commanded step asks more than the acceleration limit.
 TEST(PathClock, NeverOvershoots) {
