@@ -160,7 +160,7 @@ void Monitor::check_stop(std::int64_t now_us, int axis_index, std::int32_t targe
   if (!stop_since_us_ || now_us <= *stop_since_us_ + params_.stop_reaction_us) {
     const double scale = params_.drives[static_cast<std::size_t>(axis_index)].counts_per_rad;
     const double slack = params_.stop_slack_rad_s * 1e-6 * static_cast<double>(params_.cycle_us);
-    axis.stop_speed = std::max(static_cast<std::int32_t>(slack * scale), std::abs(change));
+    axis.stop_speed = std::abs(change) + static_cast<std::int32_t>(slack * scale);
     return;
   }
   const int sign = params_.drives[static_cast<std::size_t>(axis_index)].sign;

@@ -42,9 +42,11 @@ struct MonitorParams {
   double jaw_open_rad = -0.36;  ///< a jaw commanded beyond lets a rung go
   std::int64_t stop_reaction_us = 20'000;
   std::int64_t stop_run_out_us = 150'000;
-  /// So fast any joint may be while it runs out: one that just turned round on its path gets faster
-  /// for a while although the foot gets slower.
-  double stop_slack_rad_s = 0.1;
+  /// So much faster any joint may get while it runs out: it follows its path, and where that bends
+  /// towards it, it gains for a while although the foot gets slower. With the path's rate falling
+  /// from 1 to 0 in T and a joint acceleration of a at most, the gain is max (s - s^2 / 2)(1 - s) a
+  /// T = 0.19 a T: 0.29 rad/s for 10 rad/s^2 and 150 ms.
+  double stop_slack_rad_s = 0.3;
   std::int64_t confirmed_within_us = 50'000;
   std::int64_t opening_us = 300'000;  ///< from a pressed jaw to a lost rung, at most
   std::int64_t excused_us = 100'000;  ///< after the plant took a grasp away
