@@ -81,6 +81,16 @@ TEST_F(Confirmation, CountsContradictions) {
   EXPECT_FALSE(claw_.disagrees());
 }
 
+// Closed by all other witnesses, and three times in a row the pull test says no.
+TEST_F(Confirmation, CountsFailedPullTests) {
+  show(kHeld, 5);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(claw_.disagrees());
+    EXPECT_FALSE(claw_.conclude({0.02, 65.0}).all());
+  }
+  EXPECT_TRUE(claw_.disagrees());
+}
+
 // A switch that is closed while the claw stands open is stuck after 100 ms, not before.
 TEST_F(Confirmation, FindsAStuckSwitch) {
   show({true, kClaw.open_rad, 0.0}, 9);

@@ -123,6 +123,25 @@ TEST_F(OrdersTest, OrdersInTheCycleOfAFault) {
   }
 }
 
+// A reset is refused as long as the cause is there, however long everything has stood, and taken
+// when it is gone.
+TEST_F(OrdersTest, ResetWaitsForTheCause) {
+  for (const Fault fault : {Fault::kServoFault, Fault::kBusDown, Fault::kLinesLost}) {
+    start_anew();
+    ASSERT_TRUE(arm()) << where();
+    stand_.input.faults = flag(fault);
+    run(2.0);
+    order(Order::kReset);
+    EXPECT_EQ(output_.command, CommandVerdict::kNotNow) << name(fault);
+    EXPECT_TRUE(is_latched(output_.state)) << name(fault);
+    stand_.input.faults = 0;
+    cycle();
+    order(Order::kReset);
+    EXPECT_EQ(output_.command, CommandVerdict::kAccepted) << name(fault);
+    EXPECT_EQ(output_.state, S::kDisarmed) << name(fault);
+  }
+}
+
 // Back down after a part of the way up: the limb that moved last moves first, to where it came
 // from.
 TEST_F(OrdersTest, TurnsRoundOnTheSpot) {
