@@ -66,17 +66,25 @@ void RungMemory::learn(std::int64_t now_us, int index, const IsAhead& is_ahead,
   const auto known = std::find_if(remembered_.begin(), remembered_.end(),
                                   [&](const Remembered& each) { return is_same(each.rung, seen); });
   const bool is_full = remembered_.size() >= kMaxRungs;
+  if (known != remembered_.end()) {
+    learned.rung.confidence = std::max(learned.rung.confidence, known->rung.confidence);
+    known->rung.confidence = learned.rung.confidence;
+  }
   if (known == remembered_.end()) {
     if (!seen.damaged && learned.graspable_m > 0.0 && !is_full) remembered_.push_back(learned);
   } else if (is_ahead(seen)) {
     *known = learned;
     if (seen.damaged || !(learned.graspable_m > 0.0)) remembered_.erase(known);
   } else if (!seen.damaged) {
-    // Where own legs hide parts of it: the place is news, its thickness and what could be grasped
-    // of it are not.
+    // Where own legs hide parts of it: the place is news, its thickness is not, and what could be
+    // grasped of it only when it is more.
     known->rung.end0_m = seen.end0_m;
     known->rung.end1_m = seen.end1_m;
     known->seen_us = now_us;
+    if (learned.graspable_m <= known->graspable_m) return;
+    known->stretches = learned.stretches;
+    known->num_stretches = learned.num_stretches;
+    known->graspable_m = learned.graspable_m;
   }
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rungs stay where they were. The front heads see a rung well while it passes them; under the belly
-// the robot's own legs hide it, and there the rear claws want it. A rung that was trusted and sound
-// is therefore remembered for a while, in odom; what is seen of it now moves it, and damage seen
-// now counts. Ahead of the robot nothing is remembered: a front claw grasps what is seen.
+// Rungs stay where they were. The front heads see a rung well while it passes them; then the
+// robot's own legs hide it, just when a claw wants it: a front leg its own target, all legs what
+// lies under the belly. A rung that was trusted and sound is therefore remembered for a while, in
+// odom; what is seen of it now moves it, and damage seen now counts. Farther ahead nothing is
+// remembered.
 #pragma once
 
 #include <array>
@@ -17,8 +18,10 @@
 namespace climb_controller {
 
 struct RungMemoryParams {
-  double memory_s = 90.0;     ///< 0 = nothing is remembered (own: two rungs take 60 s)
-  double ahead_m = 0.30;      ///< body x from which on only what is seen counts
+  double memory_s = 90.0;  ///< 0 = nothing is remembered (own: two rungs take 60 s)
+  /// Body x from which on only what is seen counts (run: a front leg under way hides its own
+  /// target, at most so far ahead).
+  double ahead_m = 0.70;
   double same_rung_m = 0.05;  ///< nearer axes are the same rung (own: a fifth of a spacing)
 };
 

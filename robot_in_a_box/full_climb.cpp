@@ -13,6 +13,13 @@ PhysicalClimbParams climb_params(const FullClimbParams& params, const runtime::C
   return climb;
 }
 
+FullPerceptionParams perception_params(const FullClimbParams& params,
+                                       const runtime::Config& config) {
+  FullPerceptionParams perception = params.perception;
+  perception.memory = climb_controller::read_params(config.table("climb")).memory;
+  return perception;
+}
+
 /// Odom begins where the body is in the dock; its axes are the world's.
 Eigen::Isometry3d T_odom_world(const PhysicalClimb& climb) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
@@ -24,7 +31,8 @@ Eigen::Isometry3d T_odom_world(const PhysicalClimb& climb) {
 
 FullClimb::FullClimb(const FullClimbParams& params, const runtime::Config& config)
     : climb_(climb_params(params, config)),
-      eyes_(params.perception, config, climb_.scene(), climb_.model(), T_odom_world(climb_)) {
+      eyes_(perception_params(params, config), config, climb_.scene(), climb_.model(),
+            T_odom_world(climb_)) {
   climb_.box().see_with(eyes_);
 }
 

@@ -27,7 +27,8 @@ FullPerception::FullPerception(const FullPerceptionParams& params, const runtime
     : params_(params),
       model_(model),
       heads_(params.heads, scene, model, T_odom_world),
-      chain_(config) {
+      chain_(config),
+      memory_(params.memory) {
   newest_.reserve();
   climb_.session_id = 1;
   chain_.record({channels::kCloud.name, channels::kTopology.name, channels::kRungs.name},

@@ -21,6 +21,7 @@ namespace robot_in_a_box {
 
 struct FullPerceptionParams {
   simulator::BodyHeadsParams heads;
+  climb_controller::RungMemoryParams memory;
   std::int64_t latency_us = 50'000;  ///< from the last head's flash to the controller
 };
 
@@ -68,7 +69,7 @@ class FullPerception : public Eyes {
   std::vector<std::uint8_t> buffer_;
   std::deque<Waiting> waiting_;
   climb_controller::RungsInbox inbox_{climb_controller::PerceptionParams{}};
-  climb_controller::RungMemory memory_{climb_controller::RungMemoryParams{}};
+  climb_controller::RungMemory memory_;
   climb_controller::RungsSnapshot newest_;
   ladder_msgs::ladder_t rungs_{};
   ladder_msgs::truth_t truth_{};

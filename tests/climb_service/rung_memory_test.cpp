@@ -58,9 +58,9 @@ TEST_F(RungMemoryTest, KeepsWhatTheBellyHides) {
   EXPECT_TRUE(snapshot_.confirmed);
 }
 
-/// Ahead of the robot nothing is remembered.
-TEST_F(RungMemoryTest, ForgetsAhead) {
-  see(0.6);
+/// Far ahead of the robot nothing is remembered.
+TEST_F(RungMemoryTest, ForgetsFarAhead) {
+  see(0.9);
   complete(0.0, 0.0);
   see_nothing();
   complete(0.1, 0.1);
@@ -88,6 +88,19 @@ TEST_F(RungMemoryTest, LearnsSoundRungsOnly) {
   see_nothing();
   complete(1.0, 0.5);
   EXPECT_TRUE(snapshot_.rungs.empty());
+}
+
+/// What is remembered was trusted at least as well once as when it was last seen.
+TEST_F(RungMemoryTest, KeepsTheBestConfidence) {
+  see(0.6);
+  complete(0.0, 0.0);
+  see(0.6);
+  snapshot_.rungs[0].confidence = 0.1;
+  complete(1.0, 0.0);
+  see_nothing();
+  complete(2.0, 0.0);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_DOUBLE_EQ(snapshot_.rungs[0].confidence, 1.0);
 }
 
 /// Damage that is seen now counts, wherever the rung is.
