@@ -25,7 +25,6 @@ struct Arguments {
   double jitter_mm = 3.0;
   double tilt_deg = 1.0;
   bool down = false;
-  bool trace = false;
 };
 
 void parse(CLI::App& app, Arguments& arguments) {
@@ -39,7 +38,6 @@ void parse(CLI::App& app, Arguments& arguments) {
   app.add_option("--jitter-mm", arguments.jitter_mm, "error of a rung in one message, +- per axis");
   app.add_option("--tilt-deg", arguments.tilt_deg, "error of a rung's direction, +- per axis");
   app.add_flag("--down", arguments.down, "back into the dock afterwards");
-  app.add_flag("--trace", arguments.trace, "each change of a limb");
 }
 
 PhysicalClimbParams climb_of(const Arguments& arguments, std::uint64_t seed) {
