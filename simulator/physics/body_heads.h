@@ -41,6 +41,7 @@ class BodyHeads {
   const ladder_msgs::tof_frame_t* flash(std::int64_t utime_us);
   /// After the last head of a round: the truth at the newest frame's time.
   const ladder_msgs::truth_t* truth() const { return next_head_ == 0 ? &truth_ : nullptr; }
+  const std::array<bool, kNumHeads>& dead() const { return params_.dead; }
   void set_dead(int head, bool dead) { params_.dead[static_cast<std::size_t>(head)] = dead; }
 
  private:

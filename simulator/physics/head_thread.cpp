@@ -23,7 +23,8 @@ std::int64_t system_utime_us() {
 
 }  // namespace
 
-HeadThread::HeadThread(BodyHeads heads, const std::string& url) : heads_(std::move(heads)) {
+HeadThread::HeadThread(BodyHeads heads, const std::string& url)
+    : heads_(std::move(heads)), dead_(heads_.dead()) {
   runtime::Bus probe(url);  // throws here, not in the thread
   thread_ = std::thread([this, url] { run(url); });
 }
@@ -42,6 +43,9 @@ void HeadThread::offer(std::int64_t now_us, const PhysicsModel& model,
   {
     const std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock || is_busy_ || now_us < heads_.due_us()) return;
+    for (int head = 0; head < kNumHeads; ++head) {
+      heads_.set_dead(head, dead_[static_cast<std::size_t>(head)]);
+    }
     heads_.skip_to(now_us);
     if (now_us < heads_.due_us()) return;
     heads_.look(model, T_world_body);

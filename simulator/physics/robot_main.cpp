@@ -2,7 +2,8 @@
 // ladder_robot: robot and ladder in physics and in real time. Speaks what hardware speaks: drives
 // on CAN, touch switches and E-stop on lines, depth heads and inertial unit on LCM; beside it the
 // truth and, at the end, the figures of the climb. Signals as with ladder_plant: SIGUSR1 dock,
-// SIGUSR2 E-stop. Exit codes: 0 done or asked to stop, 2 wrong arguments, 3 a door is shut.
+// SIGUSR2 E-stop; --hand takes these and every fault as lines. Exit codes: 0 done or asked to stop,
+// 2 wrong arguments, 3 a door is shut.
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -15,6 +16,7 @@
 #include <CLI/CLI.hpp>
 #include <poll.h>
 #include <sched.h>
+#include <unistd.h>
 
 #include "runtime/channels.h"
 #include "simulator/physics/before_ladder.h"
@@ -24,6 +26,8 @@
 #include "simulator/plant/bus_hub.h"
 #include "simulator/plant/fault_script.h"
 #include "simulator/plant/line_hub.h"
+#include "simulator/plant/line_reader.h"
+#include "simulator/plant/truth_line.h"
 #include "simulator/plant/truth_perception.h"
 
 namespace {
@@ -58,6 +62,8 @@ struct Arguments {
   simulator::SceneParams ladder;
   std::vector<int> dead_heads;
   double seconds = 0.0;
+  double print_period_s = 0.0;
+  bool has_hand = false;
 };
 
 /// Throws CLI::ParseError and std::invalid_argument.
@@ -77,6 +83,10 @@ void parse(int argc, char** argv, Arguments& arguments) {
   app.add_option("--dead_heads", arguments.dead_heads, "heads that send nothing")->delimiter(',');
   app.add_option("--fault", arguments.faults, "TIME_S KIND [TARGET [VALUE [FOR_S]]]; repeatable")
       ->allow_extra_args(false);
+  app.add_flag("--hand", arguments.has_hand,
+               "obey lines on standard input at once: a fault's KIND [TARGET [VALUE [FOR_S]]], "
+               "head_dead N, head_back N, dock, undock");
+  app.add_option("--print_period_s", arguments.print_period_s, "0: only rungs climbed are told");
   app.add_option("--seconds", arguments.seconds, "stop after this time");
   app.add_option("--json", arguments.json_path, "write the climb's figures at the end");
   try {
@@ -160,6 +170,7 @@ class RunningRobot {
     } else {
       chip_.emplace(arguments.lines, std::array<int, simulator::kNumLines>{0, 1, 2, 3, 4});
     }
+    if (arguments.has_hand) hand_.emplace(STDIN_FILENO);
     std::printf("ladder %s, seed %llu, %d rungs; servo bus %s, lines %s\n", arguments.scene.c_str(),
                 static_cast<unsigned long long>(arguments.ladder.seed), arguments.ladder.num_rungs,
                 arguments.can.c_str(), arguments.lines.c_str());
@@ -194,14 +205,18 @@ class RunningRobot {
     if (lines_) {
       for (const auto& hand : lines_->receive()) plant_.set_wire_fault(hand.line, hand.fault);
     }
+    if (hand_) {
+      for (const std::string& line : hand_->take()) obey(line, now_us);
+    }
     player_.apply(now_us, plant_, memory_);
-    obey_hand();
+    obey_signals();
     plant_.advance(now_us);
     last_us_ = now_us;
     hub_.give_out(now_us);
     if (lines_) lines_->publish(plant_.lines());
     if (chip_) chip_->publish(plant_.lines());
     heads_.offer(now_us, model_, plant_.T_world_body());
+    print(now_us);
     if (now_us < imu_due_us_) return;
     imu_due_us_ = now_us + kImuPeriod_us;
     ladder_msgs::imu_t imu =
@@ -211,10 +226,40 @@ class RunningRobot {
     witness_.see(plant_.truth(), wall_s);
   }
 
-  void obey_hand() {
+  void obey_signals() {
     if (num_dock_signals != obeyed_dock_signals_) plant_.set_docked(!plant_.is_docked());
     obeyed_dock_signals_ = num_dock_signals;
-    plant_.press_estop(num_estop_signals % 2 != 0);
+    if (num_estop_signals != obeyed_estop_signals_) plant_.press_estop(num_estop_signals % 2 != 0);
+    obeyed_estop_signals_ = num_estop_signals;
+  }
+
+  void obey(const std::string& line, std::int64_t now_us) {
+    std::istringstream words(line);
+    std::string what;
+    int head = -1;
+    words >> what;
+    if (what == "dock") return plant_.set_docked(true);
+    if (what == "head_dead" || what == "head_back") {
+      words >> head;
+      if (head >= 0 && head < simulator::kNumHeads)
+        return heads_.set_dead(head, what == "head_dead");
+    }
+    const simulator::ParsedFaults parsed = simulator::parse_faults(std::string("0 ").append(line));
+    if (!parsed.problem.empty()) {
+      std::fprintf(stderr, "ladder_robot: not understood: %s\n", line.c_str());
+    }
+    for (simulator::Fault fault : parsed.faults) {
+      fault.time_us = now_us;
+      player_.add(fault);
+    }
+  }
+
+  void print(std::int64_t now_us) {
+    if (arguments_.print_period_s <= 0.0 || now_us < print_due_us_) return;
+    print_due_us_ = now_us + static_cast<std::int64_t>(arguments_.print_period_s * 1e6);
+    std::printf("%8.2f s  truth  %s\n", 1e-6 * static_cast<double>(now_us),
+                simulator::truth_line(plant_.truth()).c_str());
+    std::fflush(stdout);
   }
 
   const Arguments& arguments_;
@@ -229,11 +274,14 @@ class RunningRobot {
   simulator::ClimbWitness witness_;
   std::optional<simulator::LineHub> lines_;
   std::optional<simulator::SimulatedChip> chip_;
+  std::optional<simulator::LineReader> hand_;
   std::vector<pollfd> descriptors_;
   std::int64_t last_us_ = 0;
   std::int64_t imu_due_us_ = 0;
   std::int64_t imu_seq_ = 0;
+  std::int64_t print_due_us_ = 0;
   int obeyed_dock_signals_ = 0;
+  int obeyed_estop_signals_ = 0;
 };
 
 int run(int argc, char** argv) {

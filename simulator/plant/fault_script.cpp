@@ -172,6 +172,11 @@ FaultPlayer::FaultPlayer(std::vector<Fault> faults, MemoryBus& bus)
   std::stable_sort(faults_.begin(), faults_.end(), orders_before);
 }
 
+void FaultPlayer::add(const Fault& fault) {
+  const auto begun = faults_.begin() + static_cast<std::ptrdiff_t>(next_);
+  faults_.insert(std::upper_bound(begun, faults_.end(), fault, orders_before), fault);
+}
+
 void FaultPlayer::apply(std::int64_t now_us, RobotPlant& plant, MemoryBus& bus) {
   for (CarriedFrame unread; bus.receive(port_, now_us, unread);) continue;
   for (std::size_t i = 0; i < running_.size();) {

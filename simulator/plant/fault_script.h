@@ -87,6 +87,8 @@ class FaultPlayer {
 
   /// Begins and ends what is due by now. To be called before the plant advances to now.
   void apply(std::int64_t now_us, RobotPlant& plant, MemoryBus& bus);
+  /// One more, in its place by time; one that is past begins at the next apply().
+  void add(const Fault& fault);
   int num_begun() const { return static_cast<int>(next_); }
 
  private:

@@ -23,6 +23,7 @@
 #include "simulator/plant/fault_script.h"
 #include "simulator/plant/line_hub.h"
 #include "simulator/plant/robot_plant.h"
+#include "simulator/plant/truth_line.h"
 #include "simulator/plant/truth_message.h"
 #include "simulator/plant/truth_perception.h"
 
@@ -238,22 +239,11 @@ class RunningPlant {
   }
 
   void print(std::int64_t now_us) {
-    const simulator::PlantTruth truth = plant_.truth();
-    std::string claws;
-    for (const simulator::LegTruth& leg : truth.legs) {
-      claws += leg.holds ? " " + std::to_string(leg.rung_index) + (leg.touch ? "*" : "") : " -";
-    }
-    int enabled = 0;
-    for (const simulator::PowerState state : truth.power) {
-      enabled += state == simulator::PowerState::kOperationEnabled ? 1 : 0;
-    }
-    std::printf(
-        "%8.1f s  frames %lld in %lld out %lld lost  enabled %2d  claws%s  z %.3f m%s%s%s\n",
-        1e-6 * static_cast<double>(now_us), static_cast<long long>(hub_.num_taken()),
-        static_cast<long long>(hub_.num_given()), static_cast<long long>(hub_.gateway().num_lost()),
-        enabled, claws.c_str(), truth.T_world_body.translation().z(),
-        truth.docked ? "  docked" : "", truth.lines[simulator::kEstopN] ? "" : "  E-STOP",
-        truth.fallen ? "  FALLEN" : "");
+    std::printf("%8.1f s  frames %lld in %lld out %lld lost  %s\n",
+                1e-6 * static_cast<double>(now_us), static_cast<long long>(hub_.num_taken()),
+                static_cast<long long>(hub_.num_given()),
+                static_cast<long long>(hub_.gateway().num_lost()),
+                simulator::truth_line(plant_.truth()).c_str());
     std::fflush(stdout);
   }
 

@@ -142,5 +142,22 @@ TEST(FaultScript, RandomFaultsLeaveThePlantSane) {
   }
 }
 
+// A fault that comes while the player runs begins at once when it is past, else in its turn.
+TEST(FaultScript, OneMoreWhileItRuns) {
+  RobotBench bench(gripping_params());
+  FaultPlayer player(parse_faults("1000 stuck 0").faults, bench.bus);
+  player.add(parse_faults("500 estop").faults.at(0));
+  player.apply(bench.now_us, bench.plant, bench.bus);
+  EXPECT_EQ(player.num_begun(), 0);
+  player.add(parse_faults("0 estop 0 0 0.05").faults.at(0));
+  bench.cycle();
+  player.apply(bench.now_us, bench.plant, bench.bus);
+  EXPECT_EQ(player.num_begun(), 1);
+  EXPECT_FALSE(bench.plant.truth().lines[kEstopN]);
+  player.apply(60'000, bench.plant, bench.bus);
+  EXPECT_TRUE(bench.plant.truth().lines[kEstopN]) << "it was for 50 ms";
+  EXPECT_EQ(player.num_begun(), 1);
+}
+
 }  // namespace
 }  // namespace simulator
