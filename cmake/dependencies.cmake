@@ -11,6 +11,7 @@ pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 pkg_check_modules(GPIOD REQUIRED IMPORTED_TARGET libgpiod>=1.5)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 find_package(Threads REQUIRED)
+find_package(Boost 1.74 REQUIRED) # headers: Asio and Beast
 if(LADDER_BUILD_TESTS)
   find_package(GTest REQUIRED)
 endif()
