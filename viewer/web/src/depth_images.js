@@ -30,7 +30,7 @@ class DepthImage {
     const image = context.createImageData(width, height);
     const far = 1 / (range * 1000);
     for (let i = 0, at = 0; i < depth.length; ++i, at += 4) {
-      const grey = depth[i] > 0 ? Math.max(30, 255 * (1 - depth[i] * far) ** 1.5) : -1;
+      const grey = depth[i] > 0 ? Math.max(25, 255 * (1 - depth[i] * far) ** 2) : -1;
       image.data[at] = grey < 0 ? NO_RETURN[0] : grey;
       image.data[at + 1] = grey < 0 ? NO_RETURN[1] : grey * 0.95;
       image.data[at + 2] = grey < 0 ? NO_RETURN[2] : grey * 0.85;

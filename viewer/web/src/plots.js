@@ -7,11 +7,11 @@ import { element } from "./element.js";
 import { health_t as Health } from "./messages.js";
 
 const WINDOW_S = 120;
-const HEIGHT_PX = 130;
+const HEIGHT_PX = 105;
 const LATENCIES = [["depth", "#7aa2f7"], ["cloud", "#9ece6a"], ["topology", "#e0af68"], ["rungs", "#f7768e"], ["controller", "#bb9af7"]];
 const RATES = [["head 0", "#7aa2f7"], ["topology", "#e0af68"], ["rungs", "#f7768e"], ["controller", "#bb9af7"]];
 
-/** A number per moment and curve; what was not heard since the moment before is a gap. */
+/** A number per moment and curve; nothing where nothing was heard since the moment before. */
 class Curves {
   constructor(place, title, unit, curves) {
     this.names = curves.map(([name]) => name);
@@ -22,13 +22,16 @@ class Curves {
     this.plot = new uPlot({
       width: 380,
       height: HEIGHT_PX,
-      legend: { live: true },
-      cursor: { drag: { x: false, y: false } },
-      axes: [{ ...axis, space: 60 }, { ...axis, size: 40 }],
-      scales: { y: { range: (_, low, high) => [0, Math.max(high ?? 1, 1) * 1.05] } },
-      series: [{}, ...curves.map(([label, stroke]) => ({ label, stroke, width: 1.5, value: (_, v) => (v == null ? "-" : v.toFixed(0)) }))],
+      cursor: { drag: { x: false, y: false }, points: { show: false } },
+      axes: [{ ...axis, space: 60, size: 24, values: (_, ticks) => ticks.map((s) => `${Math.round(s - this.columns[0].at(-1))} s`) }, { ...axis, size: 40 }],
+      scales: { x: { time: false }, y: { range: (_, low, high) => [0, Math.max(high ?? 1, 1) * 1.05] } },
+      series: [{}, ...curves.map(([label, stroke]) => ({ label, stroke, width: 1.5, points: { show: false }, spanGaps: true, value: (_, v) => (v ?? this.newest(label))?.toFixed(0) ?? "-" }))],
     }, this.columns, figure);
     new ResizeObserver(() => this.plot.setSize({ width: figure.clientWidth, height: HEIGHT_PX })).observe(figure);
+  }
+
+  newest(name) {
+    return this.columns[this.names.indexOf(name) + 1].at(-1);
   }
 
   add(s, values) {

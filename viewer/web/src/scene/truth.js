@@ -23,7 +23,7 @@ export class TruthModel extends Group {
       to: ["x1", "y1", "z1"].map((name) => message[`${part}_${name}_m`][i]),
       radius,
       color: TRUTH_COLOR,
-      opacity: 0.28,
+      opacity: 0.35,
       hint,
     });
     const rungs = [...message.rung_id.keys()].map((i) =>
