@@ -43,6 +43,11 @@ if(LADDER_BUILD_JAR)
   install(PROGRAMS scripts/spy DESTINATION "${CMAKE_INSTALL_BINDIR}" RENAME ladder-spy COMPONENT spy)
 endif()
 
+# --- ladder-robot-viewer: what carries messages to people ---
+install(TARGETS ladder_viewer_main ladder_relay_main RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT viewer)
+install(DIRECTORY "${PROJECT_BINARY_DIR}/share/ladder/viewer" DESTINATION share/ladder COMPONENT viewer) # viewer/web/build
+install(FILES "${systemd_dir}/ladder-viewer.service" "${systemd_dir}/ladder-relay.service" DESTINATION ${units_dir} COMPONENT viewer)
+
 # --- ladder-msgs-dev: the message types for other programs ---
 file(GLOB message_types CONFIGURE_DEPENDS lcmtypes/*.lcm)
 install(FILES ${message_types} lcmtypes/README.md DESTINATION share/ladder/lcmtypes COMPONENT msgs)
@@ -60,7 +65,7 @@ set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
 set(CPACK_SET_DESTDIR ON) # /etc does not lie below the prefix
 set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL robot tools msgs ddgng)
+set(CPACK_COMPONENTS_ALL robot tools viewer msgs ddgng)
 if(TARGET ladder_simulator)
   list(APPEND CPACK_COMPONENTS_ALL simulator)
 endif()
@@ -91,6 +96,7 @@ ladder_deb(robot ladder-robot misc "services of a ladder-climbing robot: depth h
 ladder_deb(simulator ladder-robot-simulator misc "simulated sensors, drives and scenes for ladder-robot" "${runtime_depends}, libmujoco2.2.2")
 ladder_deb(tools ladder-robot-tools misc "ladder-log and ladder-doctor: logs and the computer that ladder-robot runs on"
            "${service_depends}, python3 (>= 3.11), iproute2, ladder-msgs-dev (= ${PROJECT_VERSION})")
+ladder_deb(viewer ladder-robot-viewer misc "web viewer of ladder-robot, and a relay of its messages over TCP" "${service_depends}")
 ladder_deb(spy ladder-robot-spy misc "lcm-spy with the messages and pictures of ladder-robot" "default-jre, liblcm-java, libjchart2d-java")
 ladder_deb(msgs ladder-msgs-dev devel "message types of ladder-robot for C++, Python and lcm-gen" "")
 set(CPACK_DEBIAN_MSGS_PACKAGE_SUGGESTS "liblcm-dev")

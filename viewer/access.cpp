@@ -3,23 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <stdexcept>
+
+#include "runtime/token.h"
 
 namespace viewer {
 namespace {
-
-constexpr std::size_t kMinTokenCharacters = 16;
-
-/// Takes as long for a wrong token as for the right one.
-bool is_same(std::string_view given, std::string_view wanted) {
-  if (given.size() != wanted.size()) return false;
-  unsigned difference = 0;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    difference |= static_cast<unsigned char>(given[i]) ^ static_cast<unsigned char>(wanted[i]);
-  }
-  return difference == 0;
-}
 
 /// The value behind "name=" up to one of `ends`, where it begins the text or follows one of
 /// `starts`.
@@ -60,27 +48,10 @@ Admission judge(const Visitor& visitor, std::string_view token) {
   if (token.empty()) {
     return is_local_name(visitor.host) ? Admission::kGranted : Admission::kForeignSite;
   }
-  const bool has_token = is_same(token_in(visitor.target), token) ||
-                         is_same(value_of(visitor.cookie, "token=", " ;", ";"), token);
+  const bool has_token =
+      runtime::is_same_token(token_in(visitor.target), token) ||
+      runtime::is_same_token(value_of(visitor.cookie, "ladder_token=", " ;", ";"), token);
   return has_token ? Admission::kGranted : Admission::kNoToken;
-}
-
-std::string read_token(const std::string& path) {
-  std::string token;
-  std::ifstream stream(path);
-  std::getline(stream, token);
-  const bool is_sound =
-      token.size() >= kMinTokenCharacters && std::all_of(token.begin(), token.end(), [](char c) {
-        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-               c == '_' || c == '-';
-      });
-  if (!is_sound) {
-    throw std::runtime_error(path +
-                             ": the token must be one line of at least 16 letters and digits; make "
-                             "one: head -c 24 /dev/urandom | base64 | tr +/ -_ > " +
-                             path);
-  }
-  return token;
 }
 
 }  // namespace viewer

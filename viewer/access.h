@@ -3,7 +3,6 @@
 // in his browser; on any other address whoever has the token.
 #pragma once
 
-#include <string>
 #include <string_view>
 
 namespace viewer {
@@ -11,9 +10,9 @@ namespace viewer {
 /// What a request says of itself; "" where a header is absent.
 struct Visitor {
   std::string_view target;  ///< "/path?token=..."
-  std::string_view host;
-  std::string_view origin;  ///< browsers send it with a WebSocket: the page that opens it
-  std::string_view cookie;
+  std::string_view host = {};
+  std::string_view origin = {};  ///< browsers send it with a WebSocket: the page that opens it
+  std::string_view cookie = {};
 };
 
 enum class Admission { kGranted, kNoToken, kForeignSite };
@@ -24,9 +23,5 @@ Admission judge(const Visitor& visitor, std::string_view token);
 
 /// The value of token=... in a request's target, "" where absent.
 std::string_view token_in(std::string_view target);
-
-/// The first line of a file, at least 16 characters of [0-9A-Za-z_-]; throws std::runtime_error
-/// that says how to make one.
-std::string read_token(const std::string& path);
 
 }  // namespace viewer

@@ -18,7 +18,7 @@
 #include "runtime/bus.h"
 #include "runtime/clock.h"
 #include "runtime/service.h"
-#include "viewer/access.h"
+#include "runtime/token.h"
 #include "viewer/log_player.h"
 #include "viewer/web_server.h"
 
@@ -106,7 +106,7 @@ class Source {
   viewer::Exhibition exhibition(const Arguments& arguments) {
     viewer::Exhibition exhibition{
         viewer::Page::load(arguments.page_folder),
-        arguments.token_file.empty() ? "" : viewer::read_token(arguments.token_file), board_,
+        arguments.token_file.empty() ? "" : runtime::read_token(arguments.token_file), board_,
         [this](std::int64_t num_missed) { return status(num_missed); }, nullptr};
     if (player_) exhibition.on_order = [this](std::string_view order) { player_->obey(order); };
     return exhibition;

@@ -14,6 +14,7 @@ import tempfile
 import unittest
 
 PERCEPTION = ("sensor", "gng", "ladder")
+TO_PEOPLE = ("viewer", "relay")
 MAX_EXPOSURE = 4.0
 
 
@@ -45,8 +46,9 @@ class Packages(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_all_are_there(self):
-        """Six packages of one version; nobody else's file is named twice."""
-        self.assertEqual(set(self.debs), {"ladder-robot", "ladder-robot-tools", "ladder-robot-simulator", "ladder-robot-spy", "ladder-msgs-dev", "libddgng-dev"})
+        """Seven packages of one version; nobody else's file is named twice."""
+        self.assertEqual(set(self.debs), {"ladder-robot", "ladder-robot-tools", "ladder-robot-viewer", "ladder-robot-simulator", "ladder-robot-spy",
+                                          "ladder-msgs-dev", "libddgng-dev"})
         self.assertEqual(len({field(deb, "Version") for deb in self.debs.values()}), 1)
         files = [name for deb in self.debs.values() for name in output("dpkg-deb", "-c", deb).splitlines() if name.startswith(("-", "l"))]
         names = [line.split()[5] for line in files]
@@ -75,7 +77,7 @@ class Packages(unittest.TestCase):
     def test_units_verify(self):
         """systemd finds nothing wrong with the units and the programs that they name."""
         units = sorted(path.name for path in (self.root / "usr/lib/systemd/system").iterdir())
-        self.assertEqual(len(units), 7)
+        self.assertEqual(len(units), 9)
         got = subprocess.run(["systemd-analyze", f"--root={self.root}", "verify", "--recursive-errors=no", "--man=no",
                               *[unit.replace("@.", "@eth1.") for unit in units]], capture_output=True, text=True, check=False)
         # Of the host's tools the folder has none.
@@ -83,8 +85,8 @@ class Packages(unittest.TestCase):
         self.assertEqual(said, [])
 
     def test_hardening(self):
-        """Perception is exposed by 4.0 at most, by systemd's own measure; the controller alone has real-time rights."""
-        for service in (*PERCEPTION, "climb"):
+        """All are exposed by 4.0 at most, by systemd's own measure; the controller alone has real-time rights."""
+        for service in (*PERCEPTION, *TO_PEOPLE, "climb"):
             unit = self.root / f"usr/lib/systemd/system/ladder-{service}.service"
             text = unit.read_text()
             exposure = float(re.search(r"exposure level for \S+: ([\d.]+)", output("systemd-analyze", "security", "--offline=true", "--no-pager", unit))[1])
@@ -105,6 +107,13 @@ class Packages(unittest.TestCase):
         got = subprocess.run([self.root / "usr/bin/ladder-doctor", "--only", "configuration", "--programs", programs, "--config", self.root / "etc/ladder/robot.toml"],
                              capture_output=True, text=True, check=False)
         self.assertEqual((got.returncode, got.stdout), (0, "ok       configuration: every service accepts it\n"))
+
+    def test_viewer_finds_its_page(self):
+        """The page lies where the installed viewer looks for it: with a wrong log it gets as far as that."""
+        got = subprocess.run([self.root / "usr/bin/ladder_viewer", "--log", "/no/such.lcm"], capture_output=True, text=True, check=False)
+        self.assertEqual((got.returncode, got.stderr), (2, "viewer: /no/such.lcm is not an LCM log, or an empty one\n"))
+        for name in ("index.html", "page.js", "page.css", "third_party_licences.txt"):
+            self.assertTrue((self.root / "usr/share/ladder/viewer" / name).stat().st_size > 0, name)
 
     def test_python_messages(self):
         """The installed Python codecs can be imported and know the types."""

@@ -22,6 +22,8 @@ ALLOWED = {
     "climb_controller/can": ["base/", "can/"],
     "climb_controller/gpio": ["base/", "gpio/"],
     "climb_controller": ["base/", "runtime/", "ladder_msgs/", "climb/", "can/", "gpio/", "climb_controller/"],
+    "viewer": ["base/", "runtime/", "ladder_msgs/", "viewer/"],
+    "relay": ["base/", "runtime/", "ladder_msgs/", "relay/"],
     "simulator": ["base/", "runtime/", "ladder_msgs/", "simulator/"],
     "robot_in_a_box": ["base/", "runtime/", "ladder_msgs/", "sensor_service/", "gng_service/", "ladder_service/", "simulator/",
                        "climb_controller/", "climb/", "can/", "gpio/", "robot_in_a_box/"],
@@ -34,7 +36,7 @@ IMPURE_STANDARD = {"chrono", "ctime", "fstream", "iostream", "thread", "mutex", 
                    "unordered_map", "unordered_set", "cstdio"}
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]', re.MULTILINE)
 SPDX = "SPDX-License-Identifier: BSD-3-Clause"
-NEEDS_SPDX = {".h", ".cpp", ".py", ".sh", ".cmake", ".lcm", ".toml", ".java", ".in"}
+NEEDS_SPDX = {".h", ".cpp", ".py", ".sh", ".cmake", ".lcm", ".toml", ".java", ".in", ".js", ".mjs", ".css", ".html"}
 
 
 def room_of(path):
