@@ -33,6 +33,12 @@ ServingEnd::ServingEnd(asio::io_context& io, const tcp::endpoint& address, std::
   accept();
 }
 
+ServingEnd::~ServingEnd() {
+  for (const auto& each : lines_) {
+    if (const auto line = each.lock()) line->close();
+  }
+}
+
 void ServingEnd::accept_later() {
   pause_.expires_after(kAcceptPause);
   pause_.async_wait([this](error_code error) {
@@ -76,6 +82,10 @@ ConnectingEnd::ConnectingEnd(asio::io_context& io, std::string host, std::string
       token_(std::move(token)),
       traffic_(traffic) {
   connect_when_needed();
+}
+
+ConnectingEnd::~ConnectingEnd() {
+  if (const auto line = line_.lock()) line->close();
 }
 
 void ConnectingEnd::connect_when_needed() {

@@ -24,6 +24,9 @@ class ServingEnd {
   /// Listens at once; throws boost::system::system_error where the address cannot be had.
   ServingEnd(boost::asio::io_context& io, const boost::asio::ip::tcp::endpoint& address,
              std::string token, Traffic& traffic);
+  ~ServingEnd();  ///< closes its lines
+  ServingEnd(const ServingEnd&) = delete;
+  ServingEnd& operator=(const ServingEnd&) = delete;
 
   void send_news();
   int num_lines() const;
@@ -45,6 +48,9 @@ class ConnectingEnd {
  public:
   ConnectingEnd(boost::asio::io_context& io, std::string host, std::string port, std::string token,
                 Traffic& traffic);
+  ~ConnectingEnd();  ///< closes its line
+  ConnectingEnd(const ConnectingEnd&) = delete;
+  ConnectingEnd& operator=(const ConnectingEnd&) = delete;
 
   void send_news();
   bool is_connected() const { return !line_.expired(); }

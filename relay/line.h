@@ -28,13 +28,13 @@ class Line : public std::enable_shared_from_this<Line> {
   void start();
   /// Sends what is new, if the line is free.
   void send_news();
+  void close();
 
  private:
   void read_head();
   void read_message(const runtime::ChannelInfo& channel, std::size_t num_bytes);
   void write(std::shared_ptr<const runtime::Posted> posted);
   void watch();
-  void close();
 
   boost::asio::ip::tcp::socket socket_;
   boost::asio::steady_timer watch_;
