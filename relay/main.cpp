@@ -13,7 +13,8 @@
 #include <boost/asio/signal_set.hpp>
 #include <systemd/sd-daemon.h>
 
-#include "relay/ends.h"
+#include "relay/client.h"
+#include "relay/server.h"
 #include "runtime/bus.h"
 #include "runtime/service.h"
 #include "runtime/token.h"
@@ -53,12 +54,12 @@ std::string lcm_url(const Arguments& arguments) {
 class Relay {
  public:
   Relay(asio::io_context& io, const Arguments& arguments)
-      : traffic_(runtime::open_lcm(lcm_url(arguments)),
-                 relay::channels_of(
-                     arguments.send.value_or(is_serving(arguments) ? relay::kTelemetry : "")),
-                 relay::channels_of(
-                     arguments.receive.value_or(is_serving(arguments) ? "" : relay::kTelemetry))),
-        lcm_readable_(io, traffic_.file_descriptor()),
+      : endpoint_(runtime::open_lcm(lcm_url(arguments)),
+                  relay::channels_of(
+                      arguments.send.value_or(is_serving(arguments) ? relay::kTelemetry : "")),
+                  relay::channels_of(
+                      arguments.receive.value_or(is_serving(arguments) ? "" : relay::kTelemetry))),
+        lcm_readable_(io, endpoint_.file_descriptor()),
         tick_(io) {
     const std::string token =
         arguments.token_file.empty() ? "" : runtime::read_token(arguments.token_file);
@@ -70,10 +71,10 @@ class Relay {
         throw std::runtime_error("at " + host + " everybody on the network could connect: " +
                                  "--token-file is needed there");
       }
-      serving_.emplace(io, tcp::endpoint(address, static_cast<std::uint16_t>(std::stoi(port))),
-                       token, traffic_);
+      server_.emplace(io, tcp::endpoint(address, static_cast<std::uint16_t>(std::stoi(port))),
+                      token, endpoint_);
     } else {
-      connecting_.emplace(io, host, port, token, traffic_);
+      client_.emplace(io, host, port, token, endpoint_);
     }
     listen();
     tick();
@@ -89,23 +90,25 @@ class Relay {
     lcm_readable_.async_wait(asio::posix::stream_descriptor::wait_read,
                              [this](boost::system::error_code error) {
                                if (error) return;
-                               traffic_.drain();
-                               if (serving_) serving_->send_news();
-                               if (connecting_) connecting_->send_news();
+                               endpoint_.drain();
+                               if (server_) server_->send_newest();
+                               if (client_) client_->send_newest();
                                listen();
                              });
   }
 
-  /// Tells the supervisor that it lives, and a person when the line comes and goes.
+  /// Tells the supervisor that it lives, and a person when a connection comes and goes.
   void tick() {
     sd_notify(0, "WATCHDOG=1");
-    const int num_lines = serving_ ? serving_->num_lines() : connecting_->is_connected() ? 1 : 0;
-    if (num_lines != num_lines_told_) {
+    const int num_connections = server_                   ? server_->num_connections()
+                                : client_->is_connected() ? 1
+                                                          : 0;
+    if (num_connections != num_told_) {
       std::fprintf(stderr, "relay: %d %s; %lld messages from there so far, %lld refused\n",
-                   num_lines, num_lines == 1 ? "line" : "lines",
-                   static_cast<long long>(traffic_.num_published()),
-                   static_cast<long long>(traffic_.num_rejected()));
-      num_lines_told_ = num_lines;
+                   num_connections, num_connections == 1 ? "connection" : "connections",
+                   static_cast<long long>(endpoint_.num_published()),
+                   static_cast<long long>(endpoint_.num_rejected()));
+      num_told_ = num_connections;
     }
     tick_.expires_after(kTick);
     tick_.async_wait([this](boost::system::error_code error) {
@@ -113,12 +116,12 @@ class Relay {
     });
   }
 
-  relay::Traffic traffic_;
+  relay::Endpoint endpoint_;
   asio::posix::stream_descriptor lcm_readable_;
   asio::steady_timer tick_;
-  std::optional<relay::ServingEnd> serving_;
-  std::optional<relay::ConnectingEnd> connecting_;
-  int num_lines_told_ = -1;
+  std::optional<relay::Server> server_;
+  std::optional<relay::Client> client_;
+  int num_told_ = -1;
 };
 
 int run(const Arguments& arguments) {

@@ -35,6 +35,12 @@ void MessageBoard::clear() {
   for (Stream& stream : streams_) stream.kept.clear();
 }
 
+BoardReader::BoardReader(const MessageBoard& board, const Periods& periods_us)
+    : board_(board), periods_us_(periods_us) {
+  for (const MessageBoard::Stream& stream : board.streams_)
+    progress_.push_back({stream.oldest(), 0});
+}
+
 std::shared_ptr<const Posted> BoardReader::next(std::int64_t monotonic_us) {
   const std::size_t num_streams = board_.streams_.size();
   progress_.resize(num_streams);
@@ -42,7 +48,7 @@ std::shared_ptr<const Posted> BoardReader::next(std::int64_t monotonic_us) {
     const std::size_t at = (turn_ + i) % num_streams;
     const MessageBoard::Stream& stream = board_.streams_[at];
     Progress& progress = progress_[at];
-    const std::int64_t oldest = stream.num_posted - static_cast<std::int64_t>(stream.kept.size());
+    const std::int64_t oldest = stream.oldest();
     if (progress.num_seen < oldest) {
       num_missed_ += oldest - progress.num_seen;
       progress.num_seen = oldest;

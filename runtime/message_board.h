@@ -41,6 +41,8 @@ class MessageBoard {
     std::int8_t sender;
     std::int64_t num_posted = 0;  ///< the last of `kept` is number num_posted - 1
     std::deque<std::shared_ptr<const Posted>> kept;
+
+    std::int64_t oldest() const { return num_posted - static_cast<std::int64_t>(kept.size()); }
   };
 
   Stream& stream_of(const Heard& heard);
@@ -54,14 +56,14 @@ class BoardReader {
   /// Shortest time between two messages of a stream, by channel number (health_t CHANNEL_*).
   using Periods = std::array<std::int64_t, 32>;
 
-  explicit BoardReader(const MessageBoard& board, const Periods& periods_us = {})
-      : board_(board), periods_us_(periods_us) {}
+  /// Begins with what hangs there now.
+  explicit BoardReader(const MessageBoard& board, const Periods& periods_us = {});
 
   /// The next message that this reader has not seen, the streams taking turns; nullptr when there
   /// is none, or when its stream is not due yet.
   std::shared_ptr<const Posted> next(std::int64_t monotonic_us);
 
-  /// Messages that were replaced before this reader came for them.
+  /// Messages that were replaced before this reader came for them, or before they were due.
   std::int64_t num_missed() const { return num_missed_; }
 
  private:

@@ -43,15 +43,15 @@ std::string_view token_in(std::string_view target) {
   return value_of(target.substr(query + 1), "token=", "&", "&#");
 }
 
-Admission judge(const Visitor& visitor, std::string_view token) {
-  if (!is_own_page(visitor.origin, visitor.host)) return Admission::kForeignSite;
+Access judge(const AccessRequest& access_request, std::string_view token) {
+  if (!is_own_page(access_request.origin, access_request.host)) return Access::kForeignSite;
   if (token.empty()) {
-    return is_local_name(visitor.host) ? Admission::kGranted : Admission::kForeignSite;
+    return is_local_name(access_request.host) ? Access::kGranted : Access::kForeignSite;
   }
   const bool has_token =
-      runtime::is_same_token(token_in(visitor.target), token) ||
-      runtime::is_same_token(value_of(visitor.cookie, "ladder_token=", " ;", ";"), token);
-  return has_token ? Admission::kGranted : Admission::kNoToken;
+      runtime::is_same_token(token_in(access_request.target), token) ||
+      runtime::is_same_token(value_of(access_request.cookie, "ladder_token=", " ;", ";"), token);
+  return has_token ? Access::kGranted : Access::kNoToken;
 }
 
 }  // namespace viewer

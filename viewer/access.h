@@ -8,18 +8,18 @@
 namespace viewer {
 
 /// What a request says of itself; "" where a header is absent.
-struct Visitor {
+struct AccessRequest {
   std::string_view target;  ///< "/path?token=..."
   std::string_view host = {};
   std::string_view origin = {};  ///< browsers send it with a WebSocket: the page that opens it
   std::string_view cookie = {};
 };
 
-enum class Admission { kGranted, kNoToken, kForeignSite };
+enum class Access { kGranted, kNoToken, kForeignSite };
 
 /// `token`: "" = none is asked for, and only names of this computer may be addressed (another name
 /// that leads here is a trick of a foreign site).
-Admission judge(const Visitor& visitor, std::string_view token);
+Access judge(const AccessRequest& access_request, std::string_view token);
 
 /// The value of token=... in a request's target, "" where absent.
 std::string_view token_in(std::string_view target);

@@ -103,13 +103,13 @@ class Source {
     if (player_) player_->step(runtime::clock_now().monotonic_us);
   }
 
-  viewer::Exhibition exhibition(const Arguments& arguments) {
-    viewer::Exhibition exhibition{
+  viewer::ServerContext context(const Arguments& arguments) {
+    viewer::ServerContext context{
         viewer::Page::load(arguments.page_folder),
         arguments.token_file.empty() ? "" : runtime::read_token(arguments.token_file), board_,
         [this](std::int64_t num_missed) { return status(num_missed); }, nullptr};
-    if (player_) exhibition.on_order = [this](std::string_view order) { player_->obey(order); };
-    return exhibition;
+    if (player_) context.on_order = [this](std::string_view order) { player_->obey(order); };
+    return context;
   }
 
  private:
@@ -129,7 +129,7 @@ class Source {
 
 void tick(asio::steady_timer& timer, Source& source, viewer::WebServer& server) {
   source.tick();
-  server.show_news();
+  server.send_newest();
   sd_notify(0, "WATCHDOG=1");
   timer.expires_after(kTick);
   timer.async_wait([&](boost::system::error_code error) {
@@ -145,10 +145,10 @@ int run(const Arguments& arguments) {
   }
   asio::io_context io;
   Source source(io, arguments);
-  viewer::WebServer server(io, {address, arguments.port}, source.exhibition(arguments));
+  viewer::WebServer server(io, {address, arguments.port}, source.context(arguments));
   asio::signal_set stop_signals(io, SIGTERM, SIGINT);
   stop_signals.async_wait([&](boost::system::error_code, int) { io.stop(); });
-  source.listen([&] { server.show_news(); });
+  source.listen([&] { server.send_newest(); });
   asio::steady_timer timer(io);
   tick(timer, source, server);
   sd_notify(0, "READY=1");

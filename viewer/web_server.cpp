@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "viewer/watcher.h"
+#include "viewer/http_session.h"
+#include "viewer/web_socket_session.h"
 
 namespace viewer {
 namespace {
@@ -15,18 +16,16 @@ using asio::ip::tcp;
 constexpr std::chrono::milliseconds kPause{10};  // 100 connections a second: a page needs four
 constexpr int kWaitingInKernel = 32;
 
-Place take_place(const std::shared_ptr<int>& num_taken) {
-  ++*num_taken;
-  return {nullptr, [num_taken](void*) { --*num_taken; }};
+ConnectionSlot take_slot(const std::shared_ptr<int>& num_connections) {
+  ++*num_connections;
+  return {nullptr, [num_connections](void*) { --*num_connections; }};
 }
 
 }  // namespace
 
-WebServer::WebServer(asio::io_context& io, const tcp::endpoint& address, Exhibition exhibition)
-    : exhibition_(std::move(exhibition)),
-      reception_{exhibition_, [this](const auto& watcher) { return admit(watcher); }},
-      acceptor_(io),
-      pause_(io) {
+WebServer::WebServer(asio::io_context& io, const tcp::endpoint& address, ServerContext context)
+    : context_(std::move(context)), acceptor_(io), pause_(io) {
+  context_.admit = [this](const auto& session) { return admit(session); };
   acceptor_.open(address.protocol());
   acceptor_.set_option(tcp::acceptor::reuse_address(true));
   acceptor_.bind(address);
@@ -42,30 +41,30 @@ void WebServer::accept_later() {
 }
 
 void WebServer::accept() {
-  if (*num_places_taken_ >= kMaxConnections) return accept_later();
+  if (*num_connections_ >= kMaxConnections) return accept_later();
   acceptor_.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error) receive_visit(std::move(socket), reception_, take_place(num_places_taken_));
+    if (!error) serve_http(std::move(socket), context_, take_slot(num_connections_));
     accept_later();
   });
 }
 
-bool WebServer::admit(const std::shared_ptr<Watcher>& watcher) {
-  if (num_watchers() >= kMaxWatchers) return false;
-  watchers_.push_back(watcher);
+bool WebServer::admit(const std::shared_ptr<WebSocketSession>& session) {
+  if (num_web_sockets() >= kMaxWebSockets) return false;
+  web_sockets_.push_back(session);
   return true;
 }
 
-void WebServer::show_news() {
-  std::erase_if(watchers_, [](const auto& watcher) { return watcher.expired(); });
-  for (const auto& each : watchers_) {
-    if (const auto watcher = each.lock()) watcher->show_news();
+void WebServer::send_newest() {
+  std::erase_if(web_sockets_, [](const auto& session) { return session.expired(); });
+  for (const auto& each : web_sockets_) {
+    if (const auto session = each.lock()) session->send_newest();
   }
 }
 
-int WebServer::num_watchers() const {
-  return static_cast<int>(std::count_if(watchers_.begin(), watchers_.end(),
-                                        [](const auto& watcher) { return !watcher.expired(); }));
+int WebServer::num_web_sockets() const {
+  return static_cast<int>(std::count_if(web_sockets_.begin(), web_sockets_.end(),
+                                        [](const auto& session) { return !session.expired(); }));
 }
 
 }  // namespace viewer

@@ -2,6 +2,7 @@
 // Publishes a sample on every channel: for the jar's test (into a log) and to try scripts/spy.
 //   lcmtypes_publish_samples 'file:///tmp/samples.log?mode=w'
 //   lcmtypes_publish_samples 'udpm://239.255.76.67:7777?ttl=0' 900 15     rounds, rounds per second
+//   ... 900 15 100     the same with 1000 nodes in each topology
 #include <chrono>
 #include <cstdio>
 #include <string>
@@ -39,15 +40,20 @@ void draw_ladder(tof_frame_t& frame, int round) {
   }
 }
 
+struct Round {
+  int number = 0;
+  int size = 8;  ///< as in sample_messages.h
+};
+
 template <class Msg>
-bool publish(lcm::LCM& bus, const runtime::Channel<Msg>& channel, int round) {
-  Msg message = lcmtypes::sample<Msg>(8, static_cast<std::uint64_t>(round));
-  message.seq = round;
-  if constexpr (std::is_same_v<Msg, tof_frame_t>) draw_ladder(message, round);
+bool publish(lcm::LCM& bus, const runtime::Channel<Msg>& channel, const Round& round) {
+  Msg message = lcmtypes::sample<Msg>(round.size, static_cast<std::uint64_t>(round.number));
+  message.seq = round.number;
+  if constexpr (std::is_same_v<Msg, tof_frame_t>) draw_ladder(message, round.number);
   return bus.publish(channel.name, &message) == 0;
 }
 
-bool publish_small(lcm::LCM& bus, int round) {
+bool publish_small(lcm::LCM& bus, const Round& round) {
   namespace channels = runtime::channels;
   return publish(bus, channels::kImu, round) && publish(bus, channels::kPose, round) &&
          publish(bus, channels::kCloud, round) && publish(bus, channels::kTopology, round) &&
@@ -58,7 +64,8 @@ bool publish_small(lcm::LCM& bus, int round) {
 }
 
 /// One round: the heads a quarter of the period apart, as on the robot.
-bool publish_round(lcm::LCM& bus, int round, std::chrono::duration<double> quarter_period) {
+bool publish_round(lcm::LCM& bus, const Round& round,
+                   std::chrono::duration<double> quarter_period) {
   if (!publish_small(bus, round)) return false;
   for (const auto& channel : runtime::channels::kTof) {
     if (!publish(bus, channel, round)) return false;
@@ -71,7 +78,7 @@ bool publish_round(lcm::LCM& bus, int round, std::chrono::duration<double> quart
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: %s LCM_URL [rounds] [rounds per second]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s LCM_URL [rounds] [rounds per second] [size]\n", argv[0]);
     return 2;
   }
   lcm::LCM bus(argv[1]);
@@ -79,7 +86,9 @@ int main(int argc, char** argv) {
   const int rounds = argc > 2 ? std::stoi(argv[2]) : 1;
   const double rate_hz = argc > 3 ? std::stod(argv[3]) : 0.0;
   const std::chrono::duration<double> quarter_period(rate_hz > 0.0 ? 0.25 / rate_hz : 0.0);
-  for (int round = 0; round < rounds; ++round) {
+  Round round;
+  if (argc > 4) round.size = std::stoi(argv[4]);
+  for (; round.number < rounds; ++round.number) {
     if (!publish_round(bus, round, quarter_period)) return 1;
   }
   return 0;

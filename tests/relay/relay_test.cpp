@@ -11,7 +11,8 @@
 
 #include "ladder_msgs/command_t.hpp"
 #include "ladder_msgs/ladder_t.hpp"
-#include "relay/ends.h"
+#include "relay/client.h"
+#include "relay/server.h"
 #include "runtime/bus.h"
 #include "runtime/clock.h"
 
@@ -20,9 +21,9 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using relay::channels_of;
-using relay::ConnectingEnd;
-using relay::ServingEnd;
-using relay::Traffic;
+using relay::Client;
+using relay::Endpoint;
+using relay::Server;
 using namespace std::chrono_literals;
 
 constexpr const char* kToken = "0123456789abcdef";
@@ -48,10 +49,10 @@ ladder_msgs::command_t order(std::int64_t seq) {
 /// One computer's LCM and what is heard there.
 struct Host {
   explicit Host(const char* send, const char* receive)
-      : traffic(connection, channels_of(send), channels_of(receive)) {}
+      : endpoint(connection, channels_of(send), channels_of(receive)) {}
 
   std::shared_ptr<lcm_t> connection = runtime::open_lcm("memq://");
-  Traffic traffic;
+  Endpoint endpoint;
   runtime::Bus bus{connection};
   runtime::Queue<ladder_msgs::ladder_t>& heard_rungs =
       bus.shared_queue(runtime::channels::kRungs, 100);
@@ -62,10 +63,10 @@ struct Host {
 class RelayTest : public ::testing::Test {
  protected:
   void serve(std::uint16_t port = 0) {
-    serving_.emplace(io_, tcp::endpoint(kAnyPort.address(), port), kToken, robot_.traffic);
+    server_.emplace(io_, tcp::endpoint(kAnyPort.address(), port), kToken, robot_.endpoint);
   }
   void connect(const std::string& token = kToken) {
-    connecting_.emplace(io_, "127.0.0.1", std::to_string(serving_->port()), token, ground_.traffic);
+    client_.emplace(io_, "127.0.0.1", std::to_string(server_->port()), token, ground_.endpoint);
   }
   /// Everything goes on until it is true; false after ten seconds.
   bool until(const std::function<bool()>& is_done) {
@@ -77,21 +78,21 @@ class RelayTest : public ::testing::Test {
     return true;
   }
   void go_on(std::chrono::milliseconds time) {
-    robot_.bus.drain();  // one connection each: also what the traffic subscribes to
+    robot_.bus.drain();  // one connection each: also what the endpoint subscribes to
     ground_.bus.drain();
-    if (serving_) serving_->send_news();
-    if (connecting_) connecting_->send_news();
+    if (server_) server_->send_newest();
+    if (client_) client_->send_newest();
     io_.run_for(time);
   }
   bool until_connected() {
-    return until([&] { return connecting_->is_connected() && serving_->num_lines() == 1; });
+    return until([&] { return client_->is_connected() && server_->num_connections() == 1; });
   }
 
   Host robot_{"LADDER_RUNGS", "LADDER_COMMAND"};
   Host ground_{"LADDER_COMMAND", "LADDER_RUNGS"};
   asio::io_context io_;
-  std::optional<ServingEnd> serving_;
-  std::optional<ConnectingEnd> connecting_;
+  std::optional<Server> server_;
+  std::optional<Client> client_;
 };
 
 // Chosen channels arrive at the other end as they were; others, and a name that is none, do not.
@@ -111,7 +112,7 @@ TEST_F(RelayTest, CarriesChosenChannels) {
   ASSERT_TRUE(until([&] { return (heard = ground_.heard_rungs.take(0)) != nullptr; }));
   EXPECT_EQ(heard->seq, 7);
   EXPECT_EQ(heard->utime, 1007);
-  EXPECT_EQ(ground_.traffic.num_published(), 1);
+  EXPECT_EQ(ground_.endpoint.num_published(), 1);
 }
 
 // Orders go the other way, every one of them and in their order.
@@ -131,31 +132,31 @@ TEST_F(RelayTest, OrdersAreNotSkipped) {
 
 // A channel that would go both ways is refused: it would go round for ever.
 TEST_F(RelayTest, NoCircles) {
-  EXPECT_THROW(Traffic(runtime::open_lcm("memq://"), channels_of("LADDER_RUNGS,LADDER_POSE"),
-                       channels_of("LADDER_POSE")),
+  EXPECT_THROW(Endpoint(runtime::open_lcm("memq://"), channels_of("LADDER_RUNGS,LADDER_POSE"),
+                        channels_of("LADDER_POSE")),
                std::runtime_error);
 }
 
-// Without the right word nobody gets a line, and the place is free again.
+// Without the right word nobody gets a connection, and the slot is free again.
 TEST_F(RelayTest, Token) {
   serve();
   connect("0123456789abcdeX");
   go_on(1500ms);
-  EXPECT_EQ(serving_->num_lines(), 0);
-  connecting_.reset();
+  EXPECT_EQ(server_->num_connections(), 0);
+  client_.reset();
   io_.restart();
   connect();
   EXPECT_TRUE(until_connected());
 }
 
-// When the serving end dies and comes back, the line is made again by itself.
+// When the serving end dies and comes back, the other connects again by itself.
 TEST_F(RelayTest, ConnectsAgain) {
   serve();
-  const std::uint16_t port = serving_->port();
+  const std::uint16_t port = server_->port();
   connect();
   ASSERT_TRUE(until_connected());
-  serving_.reset();
-  ASSERT_TRUE(until([&] { return !connecting_->is_connected(); }));
+  server_.reset();
+  ASSERT_TRUE(until([&] { return !client_->is_connected(); }));
   robot_.bus.publish(runtime::channels::kRungs, rungs(1));
   go_on(1500ms);
   EXPECT_EQ(ground_.heard_rungs.take(0), nullptr);
@@ -192,49 +193,49 @@ std::string bytes_of(const ladder_msgs::command_t& message) {
 }
 
 // A peer that knows the word can still send nothing but sound messages of the channels it may:
-// unsound ones are counted, another channel or a length beyond its type's ends the line.
+// unsound ones are counted, another channel or a length beyond its type's ends the connection.
 TEST_F(RelayTest, HostilePeer) {
   constexpr auto kCommand = ladder_msgs::health_t::CHANNEL_COMMAND;
-  const std::string greeting = std::string("LADDER-RELAY 1 ") + kToken + "\n";
+  const std::string word = std::string("LADDER-RELAY 1 ") + kToken + "\n";
   serve();
   {
-    Peer peer(io_, serving_->port());
-    peer.say(greeting);
+    Peer peer(io_, server_->port());
+    peer.say(word);
     peer.say_message(kCommand, "nonsense");
     std::string cut = bytes_of(order(1));
     cut.pop_back();
     peer.say_message(kCommand, cut);
     peer.say_message(kCommand, bytes_of(order(2)));
-    ASSERT_TRUE(until([&] { return robot_.traffic.num_published() == 1; }));
-    EXPECT_EQ(robot_.traffic.num_rejected(), 2);
+    ASSERT_TRUE(until([&] { return robot_.endpoint.num_published() == 1; }));
+    EXPECT_EQ(robot_.endpoint.num_rejected(), 2);
   }
-  ASSERT_TRUE(until([&] { return serving_->num_lines() == 0; }));
+  ASSERT_TRUE(until([&] { return server_->num_connections() == 0; }));
   const std::string huge("\xff\xff\xff\xff\x00\x0a", 6);
   const std::string not_allowed("\x00\x00\x00\x01\x00\x09x", 7);
   const std::string unknown("\x00\x00\x00\x01\x7f\xffx", 7);
   for (const std::string& bad : {huge, not_allowed, unknown}) {
-    Peer peer(io_, serving_->port());
-    peer.say(greeting);
-    ASSERT_TRUE(until([&] { return serving_->num_lines() == 1; }));
+    Peer peer(io_, server_->port());
+    peer.say(word);
+    ASSERT_TRUE(until([&] { return server_->num_connections() == 1; }));
     peer.say(bad);
-    EXPECT_TRUE(until([&] { return serving_->num_lines() == 0; }));
+    EXPECT_TRUE(until([&] { return server_->num_connections() == 0; }));
   }
-  EXPECT_EQ(robot_.traffic.num_published(), 1);
+  EXPECT_EQ(robot_.endpoint.num_published(), 1);
 }
 
 // A peer that reads nothing costs one message on its way: the robot goes on, memory is bounded by
-// the board, and a silent line is given up.
+// the board, and a silent connection is given up.
 TEST_F(RelayTest, PeerThatDoesNotRead) {
   serve();
-  Peer peer(io_, serving_->port());
+  Peer peer(io_, server_->port());
   peer.say(std::string("LADDER-RELAY 1 ") + kToken + "\n");
-  ASSERT_TRUE(until([&] { return serving_->num_lines() == 1; }));
+  ASSERT_TRUE(until([&] { return server_->num_connections() == 1; }));
   std::int64_t seq = 0;
   EXPECT_TRUE(until([&] {
     for (int i = 0; i < 100; ++i) robot_.bus.publish(runtime::channels::kRungs, rungs(seq++));
     while (robot_.heard_rungs.take(0) != nullptr) {
     }
-    return serving_->num_lines() == 0;
+    return server_->num_connections() == 0;
   }));
 }
 

@@ -108,6 +108,7 @@ TEST(MessageBoardTest, ReadersAreIndependent) {
   EXPECT_EQ(held->bytes.front(), 1);
   BoardReader late(board);
   EXPECT_EQ(next(late), 2);
+  EXPECT_EQ(late.num_missed(), 0);
   EXPECT_EQ(next(early), 2);
 }
 

@@ -6,7 +6,7 @@
 
 namespace {
 
-using viewer::Admission;
+using viewer::Access;
 using viewer::judge;
 
 constexpr const char* kToken = "0123456789abcdefXYZ_-";
@@ -15,11 +15,11 @@ constexpr const char* kToken = "0123456789abcdefXYZ_-";
 // trick.
 TEST(AccessTest, LocalNamesOnly) {
   for (const char* host : {"localhost", "localhost:8088", "127.0.0.1:8088", "[::1]:8088"}) {
-    EXPECT_EQ(judge({.target = "/", .host = host}, ""), Admission::kGranted) << host;
+    EXPECT_EQ(judge({.target = "/", .host = host}, ""), Access::kGranted) << host;
   }
   for (const char* host : {"", "evil.example:8088", "localhost.evil.example",
                            "127.0.0.1.evil.example", "localhostx", "[::1", "0.0.0.0:8088"}) {
-    EXPECT_EQ(judge({.target = "/", .host = host}, ""), Admission::kForeignSite) << host;
+    EXPECT_EQ(judge({.target = "/", .host = host}, ""), Access::kForeignSite) << host;
   }
 }
 
@@ -30,14 +30,14 @@ TEST(AccessTest, ForeignPages) {
   for (const char* origin : {"http://evil.example", "null", "http://127.0.0.1:9999",
                              "https://127.0.0.1:8088", "http://127.0.0.1:8088.evil.example"}) {
     EXPECT_EQ(judge({.target = "/messages", .host = host, .origin = origin}, ""),
-              Admission::kForeignSite)
+              Access::kForeignSite)
         << origin;
     EXPECT_EQ(judge({"/messages?token=0123456789abcdefXYZ_-", host, origin, ""}, kToken),
-              Admission::kForeignSite)
+              Access::kForeignSite)
         << origin;
   }
   EXPECT_EQ(judge({.target = "/messages", .host = host, .origin = "http://127.0.0.1:8088"}, ""),
-            Admission::kGranted);
+            Access::kGranted);
 }
 
 // The token counts whole, as a query or as our cookie; parts, prefixes and other names do not.
@@ -49,17 +49,17 @@ TEST(AccessTest, Token) {
   const auto by_cookie = [&](const std::string& cookie) {
     return judge({.target = "/", .host = "robot:8088", .cookie = cookie}, token);
   };
-  EXPECT_EQ(by_target("/?token=" + token), Admission::kGranted);
-  EXPECT_EQ(by_target("/?a=b&token=" + token + "&c=d"), Admission::kGranted);
-  EXPECT_EQ(by_cookie("ladder_token=" + token), Admission::kGranted);
-  EXPECT_EQ(by_cookie("other=1; ladder_token=" + token + "; more=2"), Admission::kGranted);
+  EXPECT_EQ(by_target("/?token=" + token), Access::kGranted);
+  EXPECT_EQ(by_target("/?a=b&token=" + token + "&c=d"), Access::kGranted);
+  EXPECT_EQ(by_cookie("ladder_token=" + token), Access::kGranted);
+  EXPECT_EQ(by_cookie("other=1; ladder_token=" + token + "; more=2"), Access::kGranted);
   for (const std::string& target :
        {std::string("/"), std::string("/?token="), "/?xtoken=" + token, "/?token=" + token + "x",
         "/token=" + token, "/?token=" + token.substr(1)}) {
-    EXPECT_EQ(by_target(target), Admission::kNoToken) << target;
+    EXPECT_EQ(by_target(target), Access::kNoToken) << target;
   }
-  EXPECT_EQ(by_cookie("xladder_token=" + token), Admission::kNoToken);
-  EXPECT_EQ(by_cookie("ladder_token=;"), Admission::kNoToken);
+  EXPECT_EQ(by_cookie("xladder_token=" + token), Access::kNoToken);
+  EXPECT_EQ(by_cookie("ladder_token=;"), Access::kNoToken);
 }
 
 }  // namespace

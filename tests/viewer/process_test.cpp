@@ -89,14 +89,14 @@ TEST_F(ViewerProcess, OnlyListens) {
     client.open_messages();
     client.send(client_frame(1 + i % 2, std::string("LADDER_COMMAND") + std::string(7, '\1')));
   }
-  RawClient watcher(port);
-  ASSERT_TRUE(watcher.open_messages());
+  RawClient session(port);
+  ASSERT_TRUE(session.open_messages());
   runtime::Bus bus(connection);
   ladder_msgs::pose_t pose{};
   pose.utime = 1;
   pose.q_odom_body[0] = 1.0;
   bus.publish(runtime::channels::kPose, pose);
-  const auto frame = watcher.read_message();
+  const auto frame = session.read_message();
   ASSERT_TRUE(frame) << child.output();
   EXPECT_EQ(frame->payload.size(), 10U + static_cast<std::size_t>(pose.getEncodedSize()));
   while (lcm_handle_timeout(connection.get(), 200) > 0) {

@@ -34,13 +34,13 @@ class WebServerTest : public ::testing::Test {
     std::ofstream(folder_ + "/index.html") << "<title>Ladder</title>";
     std::ofstream(folder_ + "/page.js") << "let ladder;";
     std::ofstream(folder_ + "/secret.key") << "not a page";
-    viewer::Exhibition exhibition{viewer::Page::load(folder_), token, board_,
+    viewer::ServerContext context{viewer::Page::load(folder_), token, board_,
                                   [](std::int64_t) { return std::string("{}"); }, nullptr};
     if (plays_log) {
-      exhibition.on_order = [this](std::string_view order) { orders_.emplace_back(order); };
+      context.on_order = [this](std::string_view order) { orders_.emplace_back(order); };
     }
     server_.emplace(io_, boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0),
-                    std::move(exhibition));
+                    std::move(context));
     port_ = server_->port();
     thread_ = std::thread([this] { io_.run(); });
   }
@@ -64,7 +64,7 @@ class WebServerTest : public ::testing::Test {
     there([&] {
       const std::vector<std::uint8_t> bytes(num_bytes, content);
       board_.post({*runtime::find_channel("LADDER_RUNGS"), 0, bytes}, 0x0102030405060708);
-      server_->show_news();
+      server_->send_newest();
     });
   }
   std::string answer_to(const std::string& request) {
@@ -72,9 +72,9 @@ class WebServerTest : public ::testing::Test {
     client.send(request);
     return client.read_all();
   }
-  int num_watchers() {
+  int num_web_sockets() {
     int number = 0;
-    there([&] { number = server_->num_watchers(); });
+    there([&] { number = server_->num_web_sockets(); });
     return number;
   }
 
@@ -135,7 +135,7 @@ TEST_F(WebServerTest, Token) {
   EXPECT_TRUE(RawClient(port_).open_messages("Cookie: ladder_token=" + token + "\r\n"));
 }
 
-// A watcher gets time, channel and the very bytes of the newest message; late ones get it too.
+// A session gets time, channel and the very bytes of the newest message; late ones get it too.
 TEST_F(WebServerTest, Messages) {
   start();
   RawClient early(port_);
@@ -177,13 +177,13 @@ TEST_F(WebServerTest, SlowClient) {
   }
   int num_read = 0;
   char last = 0;
-  there([&] { server_->show_news(); });
+  there([&] { server_->send_newest(); });
   while (last != kNumMessages) {
     const auto frame = slow.read_message();
     ASSERT_TRUE(frame);
     last = frame->payload.back();
     ++num_read;
-    there([&] { server_->show_news(); });
+    there([&] { server_->send_newest(); });
   }
   EXPECT_LT(num_read, kNumMessages / 2);
 }
@@ -221,18 +221,18 @@ TEST_F(WebServerTest, OrdersToALog) {
   there([&] { EXPECT_THAT(orders_, ::testing::ElementsAre("pause", "seek 12.5")); });
 }
 
-// Places are bounded and come back: more watchers than there are places wait or are turned away,
+// Connections are bounded, and slots come back: more pages than there may be are turned away,
 // and when the others go somebody new is let in.
-TEST_F(WebServerTest, PlacesAreBounded) {
+TEST_F(WebServerTest, ConnectionsAreBounded) {
   start();
   std::vector<std::unique_ptr<RawClient>> crowd;
   int num_open = 0;
-  for (int i = 0; i < WebServer::kMaxWatchers + 4; ++i) {
+  for (int i = 0; i < WebServer::kMaxWebSockets + 4; ++i) {
     crowd.push_back(std::make_unique<RawClient>(port_));
     num_open += crowd.back()->open_messages() ? 1 : 0;
   }
-  EXPECT_EQ(num_open, WebServer::kMaxWatchers);
-  EXPECT_EQ(num_watchers(), WebServer::kMaxWatchers);
+  EXPECT_EQ(num_open, WebServer::kMaxWebSockets);
+  EXPECT_EQ(num_web_sockets(), WebServer::kMaxWebSockets);
   crowd.clear();
   bool is_open = false;
   for (int i = 0; i < 100 && !is_open; ++i) is_open = RawClient(port_).open_messages();

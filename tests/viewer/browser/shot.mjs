@@ -9,5 +9,5 @@ page.on("console", (message) => message.type() === "error" && console.error(mess
 page.on("pageerror", (error) => console.error(error.message));
 await page.goto(url);
 await page.waitForTimeout(1000 * Number(seconds));
-await page.screenshot({ path: out });
+await page.screenshot({ path: out, ...(out.endsWith(".jpg") ? { quality: 85 } : {}) });
 await browser.close();

@@ -3,7 +3,7 @@
 
 import { element } from "./element.js";
 
-const SILENT_MS = 1000;
+const SILENT_MS = 2000;
 const NO_RETURN = [20, 30, 70];
 
 class DepthImage {

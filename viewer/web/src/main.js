@@ -33,7 +33,10 @@ const views = [
 const tell = (what, ...words) => views.forEach((view) => view[what]?.(...words));
 
 const link = new Link({
-  message: (channel, message, heardUs) => tell(message.type, message, heardUs, channel),
+  message: (channel, message, heardUs) => {
+    server.heard(heardUs);
+    tell(message.type, message, heardUs, channel);
+  },
   status: (status) => {
     if (scrubber.jumped(status)) tell("forget"); // another place in the log: curves and lists begin anew
     tell("status", status);
@@ -42,6 +45,7 @@ const link = new Link({
 });
 
 function draw() {
+  link.deliver();
   tell("draw");
   requestAnimationFrame(draw);
 }

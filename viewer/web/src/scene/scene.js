@@ -11,6 +11,9 @@ import { TRUTH_COLOR, TruthModel } from "./truth.js";
 
 const BACKGROUND = "#12151d";
 const POSE_SILENT_MS = 1000;
+/** At first the eye is behind the robot, to its right, and looks at what is before it. */
+const FIRST_EYE = new Vector3(-1.5, -1.7, 0.8);
+const FIRST_TARGET = new Vector3(0.5, 0, 0.25);
 const LEGEND = [["safe ground", CLASS_COLORS[1]], ["wall", CLASS_COLORS[2]], ["obstacle", CLASS_COLORS[3]], ["rung, trusted", LADDER_COLORS.trusted],
   ["candidate", LADDER_COLORS.candidate], ["may grasp", LADDER_COLORS.free], ["may not", LADDER_COLORS.refused], ["truth", TRUTH_COLOR]];
 
@@ -37,12 +40,11 @@ export class Scene {
 
   openEyes(place) {
     this.camera = new PerspectiveCamera(50, 1, 0.02, 60);
-    this.camera.position.set(-1.6, -1.9, 1.3);
     this.renderer = new WebGLRenderer({ antialias: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     place.prepend(this.renderer.domElement);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
-    this.controls.target.set(0.8, 0, 0.6);
+    this.lookFrom(new Vector3());
     this.controls.addEventListener("change", () => (this.isChanged = true));
     new ResizeObserver(() => this.resize()).observe(place);
     this.renderer.domElement.addEventListener("pointermove", (event) => this.point(event));
@@ -99,13 +101,19 @@ export class Scene {
     this.isChanged = true;
   }
 
+  lookFrom(place) {
+    this.camera.position.copy(place).add(FIRST_EYE);
+    this.controls.target.copy(place).add(FIRST_TARGET);
+  }
+
   /** The camera goes along with the robot, from wherever it looks. */
   stand(p, q) {
+    const place = new Vector3(...p);
     if (this.robot.visible) {
-      const moved = new Vector3(...p).sub(this.robot.position);
+      const moved = place.sub(this.robot.position);
       this.camera.position.add(moved);
       this.controls.target.add(moved);
-    }
+    } else this.lookFrom(place);
     this.robot.stand(p, q);
     this.isChanged = true;
   }

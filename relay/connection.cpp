@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "relay/line.h"
+#include "relay/connection.h"
 
 #include <chrono>
 
@@ -19,21 +19,21 @@ constexpr int kMaxSilentLooks = 5;
 
 }  // namespace
 
-Line::Line(asio::ip::tcp::socket&& socket, Traffic& traffic)
+Connection::Connection(asio::ip::tcp::socket&& socket, Endpoint& endpoint)
     : socket_(std::move(socket)),
       watch_(socket_.get_executor()),
-      traffic_(traffic),
-      reader_(traffic.board()) {}
+      endpoint_(endpoint),
+      reader_(endpoint.board()) {}
 
-void Line::start() {
+void Connection::start() {
   error_code ignored;
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
   read_head();
   watch();
-  send_news();
+  send_newest();
 }
 
-void Line::read_head() {
+void Connection::read_head() {
   asio::async_read(
       socket_, asio::buffer(head_in_), [self = shared_from_this()](error_code error, std::size_t) {
         if (error) return self->close();
@@ -43,29 +43,29 @@ void Line::read_head() {
                                       std::size_t{head[2]} << 8 | std::size_t{head[3]};
         const auto number = static_cast<std::int16_t>(head[4] << 8 | head[5]);
         if (num_bytes == 0 && number == 0) return self->read_head();
-        const runtime::ChannelInfo* channel = self->traffic_.find_received(number);
+        const runtime::ChannelInfo* channel = self->endpoint_.find_received(number);
         if (channel == nullptr || num_bytes > channel->type->max_bytes) return self->close();
         self->read_message(*channel, num_bytes);
       });
 }
 
-void Line::read_message(const runtime::ChannelInfo& channel, std::size_t num_bytes) {
+void Connection::read_message(const runtime::ChannelInfo& channel, std::size_t num_bytes) {
   message_in_.resize(num_bytes);
   asio::async_read(socket_, asio::buffer(message_in_),
                    [self = shared_from_this(), &channel](error_code error, std::size_t) {
                      if (error) return self->close();
                      self->was_heard_ = true;
-                     self->traffic_.publish(channel, self->message_in_);
+                     self->endpoint_.publish(channel, self->message_in_);
                      self->read_head();
                    });
 }
 
-void Line::send_news() {
+void Connection::send_newest() {
   if (is_writing_ || !socket_.is_open()) return;
   if (auto posted = reader_.next(runtime::clock_now().monotonic_us)) write(std::move(posted));
 }
 
-void Line::write(std::shared_ptr<const runtime::Posted> posted) {
+void Connection::write(std::shared_ptr<const runtime::Posted> posted) {
   is_writing_ = true;
   message_out_ = std::move(posted);
   const auto number = static_cast<std::uint16_t>(message_out_ ? message_out_->channel->number : 0);
@@ -80,11 +80,11 @@ void Line::write(std::shared_ptr<const runtime::Posted> posted) {
   asio::async_write(socket_, parts, [self = shared_from_this()](error_code error, std::size_t) {
     if (error) return self->close();
     self->is_writing_ = false;
-    self->send_news();
+    self->send_newest();
   });
 }
 
-void Line::watch() {
+void Connection::watch() {
   num_silent_looks_ = was_heard_ ? 0 : num_silent_looks_ + 1;
   was_heard_ = false;
   if (num_silent_looks_ >= kMaxSilentLooks) return close();
@@ -95,10 +95,16 @@ void Line::watch() {
   });
 }
 
-void Line::close() {
+void Connection::close() {
   error_code ignored;
   socket_.close(ignored);
   watch_.cancel();
+}
+
+std::shared_ptr<Connection> start_connection(asio::ip::tcp::socket&& socket, Endpoint& endpoint) {
+  const auto connection = std::make_shared<Connection>(std::move(socket), endpoint);
+  connection->start();
+  return connection;
 }
 
 }  // namespace relay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "relay/traffic.h"
+#include "relay/endpoint.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -23,7 +23,7 @@ Channels channels_of(std::string_view names) {
   return channels;
 }
 
-Traffic::Traffic(std::shared_ptr<lcm_t> connection, const Channels& send, Channels receive)
+Endpoint::Endpoint(std::shared_ptr<lcm_t> connection, const Channels& send, Channels receive)
     : connection_(std::move(connection)),
       receive_(std::move(receive)),
       tap_(connection_, send, [this](const runtime::Heard& heard) {
@@ -37,14 +37,14 @@ Traffic::Traffic(std::shared_ptr<lcm_t> connection, const Channels& send, Channe
   }
 }
 
-const runtime::ChannelInfo* Traffic::find_received(std::int16_t number) const {
+const runtime::ChannelInfo* Endpoint::find_received(std::int16_t number) const {
   const auto found =
       std::find_if(receive_.begin(), receive_.end(),
                    [&](const runtime::ChannelInfo* channel) { return channel->number == number; });
   return found == receive_.end() ? nullptr : *found;
 }
 
-void Traffic::publish(const runtime::ChannelInfo& channel, std::span<const std::uint8_t> message) {
+void Endpoint::publish(const runtime::ChannelInfo& channel, std::span<const std::uint8_t> message) {
   if (check_.check(message, channel) != runtime::Reject::kNone) {
     ++num_rejected_;
     return;

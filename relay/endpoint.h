@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one end of the relay carries: messages heard on its LCM for the other end, and messages of
-// the other end for its LCM. Which channels go which way each end decides for itself.
+// LCM at one end of the relay: messages heard there for the other end, and messages of the other
+// end that are published there. Which channels go which way each end decides for itself.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,16 @@ inline constexpr const char* kTelemetry =
     "CONFIG,"
     "LADDER_TRUTH";
 
-class Traffic {
+class Endpoint {
  public:
   /// Throws std::runtime_error where a channel would go both ways, and so round for ever.
-  Traffic(std::shared_ptr<lcm_t> connection, const Channels& send, Channels receive);
+  Endpoint(std::shared_ptr<lcm_t> connection, const Channels& send, Channels receive);
 
   /// Puts what was heard on LCM onto the board.
   void drain() { tap_.drain(); }
   int file_descriptor() const { return tap_.file_descriptor(); }
 
-  /// For the lines: each reads at its own pace.
+  /// For the connections: each reads at its own pace.
   const runtime::MessageBoard& board() const { return board_; }
 
   /// The channel that the other end may fill by this number, or nullptr.

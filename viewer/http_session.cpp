@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "viewer/visit.h"
+#include "viewer/http_session.h"
 
 #include <chrono>
 
@@ -8,7 +8,7 @@
 #include <boost/beast/websocket.hpp>
 
 #include "viewer/access.h"
-#include "viewer/watcher.h"
+#include "viewer/web_socket_session.h"
 
 namespace viewer {
 namespace {
@@ -29,10 +29,11 @@ std::string_view text(beast::string_view other) {
   return {other.data(), other.size()};
 }
 
-class Visit : public std::enable_shared_from_this<Visit> {
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  Visit(boost::asio::ip::tcp::socket&& socket, const Reception& reception, Place place)
-      : stream_(std::move(socket)), reception_(reception), place_(std::move(place)) {
+  HttpSession(boost::asio::ip::tcp::socket&& socket, const ServerContext& context,
+              ConnectionSlot slot)
+      : stream_(std::move(socket)), context_(context), slot_(std::move(slot)) {
     parser_.header_limit(kMaxHeadBytes);
   }
 
@@ -47,44 +48,45 @@ class Visit : public std::enable_shared_from_this<Visit> {
  private:
   void judge_request() {
     const auto& request = parser_.get();
-    const Visitor visitor{text(request.target()), text(request[http::field::host]),
-                          text(request[http::field::origin]), text(request[http::field::cookie])};
-    const Admission admission = judge(visitor, reception_.exhibition.token);
-    if (admission == Admission::kForeignSite) {
+    const AccessRequest access_request{text(request.target()), text(request[http::field::host]),
+                                       text(request[http::field::origin]),
+                                       text(request[http::field::cookie])};
+    const Access access = judge(access_request, context_.token);
+    if (access == Access::kForeignSite) {
       return refuse(http::status::forbidden,
                     "Only this viewer's own page may look. Use the address it printed.\n");
     }
-    if (admission == Admission::kNoToken) {
+    if (access == Access::kNoToken) {
       return refuse(http::status::unauthorized, "Open this address with /?token=... behind it.\n");
     }
     if (request.method() != http::verb::get) {
       return refuse(http::status::method_not_allowed, "This viewer is only looked at.\n");
     }
     if (beast::websocket::is_upgrade(request)) return open_messages();
-    if (!token_in(visitor.target).empty()) return remember_token();
-    show_page(visitor.target);
+    if (!token_in(access_request.target).empty()) return remember_token();
+    show_page(access_request.target);
   }
 
   void open_messages() {
     if (text(parser_.get().target()) != "/messages") {
       return refuse(http::status::not_found, "Messages are at /messages.\n");
     }
-    const auto watcher =
-        std::make_shared<Watcher>(std::move(stream_), reception_.exhibition, std::move(place_));
-    if (reception_.admit(watcher)) watcher->open(parser_.get());
+    const auto session =
+        std::make_shared<WebSocketSession>(std::move(stream_), context_, std::move(slot_));
+    if (context_.admit(session)) session->open(parser_.get());
   }
 
   /// The token leaves the address bar and comes back as a cookie.
   void remember_token() {
     answer_.result(http::status::see_other);
     answer_.set(http::field::location, "/");
-    answer_.set(http::field::set_cookie, "ladder_token=" + reception_.exhibition.token +
-                                             "; Path=/; HttpOnly; SameSite=Strict");
+    answer_.set(http::field::set_cookie,
+                "ladder_token=" + context_.token + "; Path=/; HttpOnly; SameSite=Strict");
     send(kTextType, "");
   }
 
   void show_page(std::string_view target) {
-    const PageFile* file = reception_.exhibition.page.find(target);
+    const PageFile* file = context_.page.find(target);
     if (file == nullptr) return refuse(http::status::not_found, "There is no such page.\n");
     send(file->type, file->bytes);
   }
@@ -113,8 +115,8 @@ class Visit : public std::enable_shared_from_this<Visit> {
   }
 
   beast::tcp_stream stream_;
-  const Reception& reception_;
-  Place place_;
+  const ServerContext& context_;
+  ConnectionSlot slot_;
   beast::flat_static_buffer<kMaxHeadBytes> buffer_;
   http::request_parser<http::empty_body> parser_;
   Answer answer_;
@@ -122,8 +124,9 @@ class Visit : public std::enable_shared_from_this<Visit> {
 
 }  // namespace
 
-void receive_visit(boost::asio::ip::tcp::socket&& socket, const Reception& reception, Place place) {
-  std::make_shared<Visit>(std::move(socket), reception, std::move(place))->read();
+void serve_http(boost::asio::ip::tcp::socket&& socket, const ServerContext& context,
+                ConnectionSlot slot) {
+  std::make_shared<HttpSession>(std::move(socket), context, std::move(slot))->read();
 }
 
 }  // namespace viewer

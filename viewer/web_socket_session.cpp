@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "viewer/watcher.h"
+#include "viewer/web_socket_session.h"
 
 #include "runtime/clock.h"
 
@@ -38,13 +38,14 @@ void put_big_endian(std::uint64_t value, std::size_t num_bytes, std::uint8_t* to
 
 }  // namespace
 
-Watcher::Watcher(beast::tcp_stream&& stream, const Exhibition& exhibition, Place place)
+WebSocketSession::WebSocketSession(beast::tcp_stream&& stream, const ServerContext& context,
+                                   ConnectionSlot slot)
     : socket_(std::move(stream)),
-      exhibition_(exhibition),
-      place_(std::move(place)),
-      reader_(exhibition.board, page_periods()) {}
+      context_(context),
+      slot_(std::move(slot)),
+      reader_(context.board, page_periods()) {}
 
-void Watcher::open(const Request& request) {
+void WebSocketSession::open(const Request& request) {
   beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timeouts
   socket_.set_option(websocket::stream_base::timeout{kHandshakePatience, kSilencePatience, true});
   socket_.read_message_max(kMaxOrderBytes);
@@ -52,38 +53,38 @@ void Watcher::open(const Request& request) {
     if (error) return;
     self->is_ready_ = true;
     self->read();
-    self->show_news();
+    self->send_newest();
   });
 }
 
-void Watcher::read() {
+void WebSocketSession::read() {
   socket_.async_read(heard_, [self = shared_from_this()](beast::error_code error, std::size_t) {
     self->on_read(error);
   });
 }
 
-void Watcher::on_read(beast::error_code error) {
-  if (error || !socket_.got_text() || !exhibition_.on_order) return cut_off();
+void WebSocketSession::on_read(beast::error_code error) {
+  if (error || !socket_.got_text() || !context_.on_order) return close();
   const auto text = heard_.cdata();
-  exhibition_.on_order({static_cast<const char*>(text.data()), text.size()});
+  context_.on_order({static_cast<const char*>(text.data()), text.size()});
   heard_.clear();
   read();
 }
 
-void Watcher::show_news() {
+void WebSocketSession::send_newest() {
   if (!is_ready_) return;
   const std::int64_t now_us = runtime::clock_now().monotonic_us;
   if (now_us >= status_due_us_) {
     status_due_us_ = now_us + kStatusPeriodUs;
-    show_status();
+    send_status();
   } else if (auto posted = reader_.next(now_us)) {
-    show(std::move(posted));
+    send(std::move(posted));
   }
 }
 
-void Watcher::show_status() {
+void WebSocketSession::send_status() {
   is_ready_ = false;
-  status_ = exhibition_.status(reader_.num_missed());
+  status_ = context_.status(reader_.num_missed());
   socket_.text(true);
   socket_.async_write(asio::buffer(status_),
                       [self = shared_from_this()](beast::error_code error, std::size_t) {
@@ -91,25 +92,25 @@ void Watcher::show_status() {
                       });
 }
 
-void Watcher::show(std::shared_ptr<const runtime::Posted> posted) {
+void WebSocketSession::send(std::shared_ptr<const runtime::Posted> posted) {
   is_ready_ = false;
-  shown_ = std::move(posted);
-  put_big_endian(static_cast<std::uint64_t>(shown_->received_utime_us), 8, head_.data());
-  put_big_endian(static_cast<std::uint16_t>(shown_->channel->number), 2, head_.data() + 8);
-  const std::array<asio::const_buffer, 2> frame{asio::buffer(head_), asio::buffer(shown_->bytes)};
+  sending_ = std::move(posted);
+  put_big_endian(static_cast<std::uint64_t>(sending_->received_utime_us), 8, head_.data());
+  put_big_endian(static_cast<std::uint16_t>(sending_->channel->number), 2, head_.data() + 8);
+  const std::array<asio::const_buffer, 2> frame{asio::buffer(head_), asio::buffer(sending_->bytes)};
   socket_.binary(true);
   socket_.async_write(frame, [self = shared_from_this()](beast::error_code error, std::size_t) {
     if (!error) self->on_written();
   });
 }
 
-void Watcher::on_written() {
-  shown_.reset();
+void WebSocketSession::on_written() {
+  sending_.reset();
   is_ready_ = true;
-  show_news();
+  send_newest();
 }
 
-void Watcher::cut_off() {
+void WebSocketSession::close() {
   is_ready_ = false;
   beast::get_lowest_layer(socket_).close();
 }

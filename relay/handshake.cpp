@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "relay/greeting.h"
+#include "relay/handshake.h"
 
 #include <chrono>
 
@@ -19,19 +19,19 @@ using boost::system::error_code;
 
 constexpr std::chrono::seconds kPatience{4};
 
-std::string greeting_with(const std::string& token) {
+std::string word_with(const std::string& token) {
   return "LADDER-RELAY 1 " + token + "\n";
 }
 
 /// What both sides have: a socket, and an end to patience.
-class Greeting : public std::enable_shared_from_this<Greeting> {
+class Handshake : public std::enable_shared_from_this<Handshake> {
  public:
-  Greeting(tcp::socket&& socket, const std::string& token, Greeted greeted)
+  Handshake(tcp::socket&& socket, const std::string& token, Accepted accepted)
       : socket_(std::move(socket)),
         resolver_(socket_.get_executor()),
         patience_(socket_.get_executor()),
-        wanted_(greeting_with(token)),
-        greeted_(std::move(greeted)) {}
+        wanted_(word_with(token)),
+        accepted_(std::move(accepted)) {}
 
   void await() {
     be_patient();
@@ -75,31 +75,31 @@ class Greeting : public std::enable_shared_from_this<Greeting> {
     });
   }
 
-  void end(bool is_greeted) {
+  void end(bool is_agreed) {
     patience_.cancel();
-    if (is_greeted && socket_.is_open()) greeted_(std::move(socket_));
+    if (is_agreed && socket_.is_open()) accepted_(std::move(socket_));
   }
 
   tcp::socket socket_;
   tcp::resolver resolver_;
   asio::steady_timer patience_;
   std::string wanted_, said_;
-  Greeted greeted_;
+  Accepted accepted_;
 };
 
 }  // namespace
 
-Ongoing await_greeting(tcp::socket&& socket, const std::string& token, Greeted greeted) {
-  const auto greeting = std::make_shared<Greeting>(std::move(socket), token, std::move(greeted));
-  greeting->await();
-  return greeting;
+Ongoing accept_handshake(tcp::socket&& socket, const std::string& token, Accepted accepted) {
+  const auto handshake = std::make_shared<Handshake>(std::move(socket), token, std::move(accepted));
+  handshake->await();
+  return handshake;
 }
 
-Ongoing greet(asio::io_context& io, const std::string& host, const std::string& port,
-              const std::string& token, Greeted greeted) {
-  const auto greeting = std::make_shared<Greeting>(tcp::socket(io), token, std::move(greeted));
-  greeting->resolve(host, port);
-  return greeting;
+Ongoing connect(asio::io_context& io, const std::string& host, const std::string& port,
+                const std::string& token, Accepted accepted) {
+  const auto handshake = std::make_shared<Handshake>(tcp::socket(io), token, std::move(accepted));
+  handshake->resolve(host, port);
+  return handshake;
 }
 
 }  // namespace relay

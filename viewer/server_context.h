@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the web server and its connections share: what there is to see and who may see it.
+// What the web server and its sessions share: what is served, and to whom.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,10 @@
 
 namespace viewer {
 
-/// What is served, and to whom; outlives every connection.
-struct Exhibition {
+class WebSocketSession;
+
+/// Outlives every session.
+struct ServerContext {
   Page page;
   std::string token;  ///< "" = none is asked for
   const runtime::MessageBoard& board;
@@ -22,10 +24,12 @@ struct Exhibition {
   std::function<std::string(std::int64_t num_missed)> status;
   /// A page's word to the log player. Empty where messages are live: then a page that says anything
   /// is cut off.
-  std::function<void(std::string_view)> on_order;
+  std::function<void(std::string_view)> on_order = nullptr;
+  /// Set by the server: takes a session in, or says that there are too many.
+  std::function<bool(const std::shared_ptr<WebSocketSession>&)> admit = nullptr;
 };
 
-/// One place in the audience; free again when its last holder lets go.
-using Place = std::shared_ptr<void>;
+/// One of the connections that may be open at a time; free again when its last holder lets go.
+using ConnectionSlot = std::shared_ptr<void>;
 
 }  // namespace viewer
