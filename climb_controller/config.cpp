@@ -29,6 +29,8 @@ void read(ConfigTable table, climb::ClawParams& p) {
   table.read("on_rung_rad", p.on_rung_rad);
   table.read("on_rung_window_rad", p.on_rung_window_rad);
   table.read("capture_m", p.capture_m);
+  table.read("seat_up_m", p.seat_up_m);
+  table.read("seat_out_m", p.seat_out_m);
   table.read("min_rung_radius_m", p.min_rung_radius_m);
   table.read("max_rung_radius_m", p.max_rung_radius_m);
   table.read("holding_torque_Nm", p.holding_torque_Nm);
@@ -108,6 +110,9 @@ void read(ConfigTable table, climb::OdometryParams& p) {
   table.read("slip_m", p.slip_m);
   table.read("orientation_sigma_rad", p.orientation_sigma_rad);
   table.read("free_drift_m_s", p.free_drift_m_s);
+  table.read("settled_after", p.settled_after);
+  table.read("settling_trust", p.settling_trust);
+  table.read("settling_s", p.settling_s);
 }
 
 void read(ConfigTable table, climb::GraspChoiceParams& p) {

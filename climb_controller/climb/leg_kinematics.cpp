@@ -136,6 +136,12 @@ Eigen::Matrix3d LegKinematics::R_body_claw(Leg leg, const LegAngles& angles_rad)
   return result;
 }
 
+Eigen::Vector3d LegKinematics::seat_m(Leg leg, const LegAngles& angles_rad) const {
+  const Eigen::Matrix3d R = R_body_claw(leg, angles_rad);
+  return foot_m(leg, angles_rad) + robot_.claw.seat_up_m * R.col(0) +
+         robot_.claw.seat_out_m * R.col(2);
+}
+
 Eigen::Vector3d LegKinematics::retract_direction(Leg leg, const LegAngles& angles_rad) const {
   return R_body_claw(leg, angles_rad).col(2);
 }

@@ -46,6 +46,10 @@ class LegKinematics {
   /// Claw axes as columns: x towards the palm's edge, y along a held rung, z out of the ladder.
   Eigen::Matrix3d R_body_claw(Leg leg, const LegAngles& angles_rad) const;
 
+  /// The axis of a rung on which the claw has settled. It stays there when the shank turns; the
+  /// foot's point, some mm beside it, does not.
+  Eigen::Vector3d seat_m(Leg leg, const LegAngles& angles_rad) const;
+
   /// Unit: the way a claw leaves its rung without dragging at it (the claw's z).
   Eigen::Vector3d retract_direction(Leg leg, const LegAngles& angles_rad) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The body's pose in the odom frame from the feet that hold and the IMU's orientation. Each foot
-// keeps the odom point where it first held fully; no drift arises while the same feet hold.
+// keeps the odom point of its rung; no drift arises while the same feet hold. A new foot still
+// slides in its claw: it counts little, and follows the others, until it has settled.
 #pragma once
 
 #include <optional>
@@ -51,12 +52,16 @@ class Odometry {
  private:
   struct Anchor {
     bool set = false;
+    int num_later = 0;  ///< feet that took hold after this one
     Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
     double variance_m2 = 0.0;
   };
+  bool has_settled(Leg leg) const { return anchors_[leg].num_later >= params_.settled_after; }
   void locate(const OdometryInput& input);
   void find_slip(const OdometryInput& input);
-  void keep_anchors(const OdometryInput& input);
+  Eigen::Vector3d seat_odom_m(const OdometryInput& input, Leg leg) const;
+  void keep_anchors(const OdometryInput& input, bool is_first);
+  void set_anchor(Leg leg, const Eigen::Vector3d& seat_odom_m, bool is_first);
 
   LegKinematics kinematics_;
   OdometryParams params_;

@@ -44,6 +44,8 @@ std::string check(const ClawParams& p) {
       {in(p.open_rad, p.on_rung_rad + p.on_rung_window_rad, 3.2),
        "open_rad must be on_rung_rad + on_rung_window_rad..3.2"},
       {in(p.capture_m, 0.001, 0.1), "capture_m must be 0.001..0.1"},
+      {in(p.seat_up_m, -0.05, 0.05), "seat_up_m must be -0.05..0.05"},
+      {in(p.seat_out_m, -0.05, 0.05), "seat_out_m must be -0.05..0.05"},
       {in(p.min_rung_radius_m, 0.001, 0.1), "min_rung_radius_m must be 0.001..0.1"},
       {in(p.max_rung_radius_m, p.min_rung_radius_m, 0.1),
        "max_rung_radius_m must be min_rung_radius_m..0.1"},
@@ -138,6 +140,9 @@ std::string check(const OdometryParams& p) {
       {in(p.slip_m, 1e-6, 1.0), "slip_m must be 1e-6..1"},
       {in(p.orientation_sigma_rad, 0.0, 1.0), "orientation_sigma_rad must be 0..1"},
       {in(p.free_drift_m_s, 0.0, 10.0), "free_drift_m_s must be 0..10"},
+      {in(p.settled_after, 0, 3), "settled_after must be 0..3"},
+      {in(p.settling_trust, 1e-6, 1.0), "settling_trust must be 1e-6..1"},
+      {in(p.settling_s, 0.01, 100.0), "settling_s must be 0.01..100"},
   };
   return first_violated(relations, "odometry");
 }

@@ -29,6 +29,8 @@ struct ClawParams {
   double on_rung_window_rad =
       0.105;                         ///< a grasp reads on_rung within this (run: 25..30 mm, pulled)
   double capture_m = 0.015;          ///< a rung axis nearer to the foot than this is caught (run)
+  double seat_up_m = 0.006;          ///< where a settled rung's axis lies, above the foot's point
+  double seat_out_m = 0.003;         ///< ... and further in: finger and palm touch it (run: 27 mm)
   double min_rung_radius_m = 0.010;  ///< (run: 22 mm rungs, less 1 mm of measuring error)
   double max_rung_radius_m = 0.021;  ///< (run: 40 mm rungs, and 1 mm)
   double holding_torque_Nm = 3.2;    ///< of the jaw on a rung (run)
@@ -112,6 +114,10 @@ struct OdometryParams {
   double slip_m = 0.008;                ///< a foot disagreeing more has slipped (own)
   double orientation_sigma_rad = 0.01;  ///< of the IMU (own)
   double free_drift_m_s = 0.5;          ///< error growth while no foot holds (own)
+  /// A new claw slides up to 6 mm down its rung until it has borne two steps of other limbs (run).
+  int settled_after = 2;
+  double settling_trust = 0.05;  ///< of such a foot, beside 1 (own)
+  double settling_s = 0.3;       ///< it takes its place from the others, so slowly (own)
 };
 
 /// What makes a point on a rung a grasp for a leg.

@@ -17,6 +17,8 @@ constexpr std::uint64_t kSession = 0x5e551011;
 inline ControllerParams params() {
   ControllerParams params;
   params.session_id = kSession;
+  // The stand's claws hold a rung at the foot's point.
+  params.climb.robot.claw.seat_up_m = params.climb.robot.claw.seat_out_m = 0.0;
   return params;
 }
 

@@ -11,7 +11,14 @@ namespace {
 
 using climb_tests::kNan;
 
-const ClimbParams kParams;
+/// Claws that hold a rung at the foot's point: that point stays.
+ClimbParams pinned_feet() {
+  ClimbParams params;
+  params.robot.claw.seat_up_m = params.robot.claw.seat_out_m = 0.0;
+  return params;
+}
+
+const ClimbParams kParams = pinned_feet();
 const LegKinematics kKinematics(kParams.robot);
 
 Eigen::Quaterniond random_rotation(base::Rng& rng, double most_rad) {
@@ -143,6 +150,65 @@ TEST(Odometry, AFreeFootTakesNoPart) {
   EXPECT_LE((*odometry.anchor_m(kRearRight) - feet[kRearRight]).norm(), 1e-12);
   EXPECT_NEAR(odometry.estimate().position_odom_m.x(), 0.02, 1e-12);
   EXPECT_GT(odometry.estimate().position_sigma_m, sigma_m);
+}
+
+// Claws whose shanks turn keep their rungs where they are: what stays is the rung's axis in the
+// settled claw and not the foot's point.
+TEST(Odometry, ARungStaysWhereTheShankTurns) {
+  const ClimbParams params;
+  const LegKinematics kinematics(params.robot);
+  const Eigen::Quaterniond upright(Eigen::AngleAxisd(-M_PI / 2, Eigen::Vector3d::UnitY()));
+  const Stance stance = climb_tests::hanging_stance(params);
+  PerLeg<Eigen::Vector3d> rungs_m;
+  for (const Leg leg : kLegs) {
+    rungs_m[leg] = upright * kinematics.seat_m(leg, stance.angles_rad[leg]);
+  }
+  Odometry odometry(params.robot, params.odometry);
+  OdometryInput input;
+  input.q_odom_body = upright;
+  input.angles_rad = stance.angles_rad;
+  input.weight = {1.0, 1.0, 1.0, 1.0};
+  odometry.update(input);
+  const Eigen::Vector3d risen_m(0.0, 0.0, 0.08);
+  for (const Leg leg : kLegs) {
+    // The foot for which the claw has its rung, by iteration: the claw turns as the leg moves.
+    Eigen::Vector3d foot_m = kinematics.foot_m(leg, stance.angles_rad[leg]);
+    for (int i = 0; i < 50; ++i) {
+      input.angles_rad[leg] = kinematics.inverse(leg, foot_m).angles_rad;
+      const Eigen::Vector3d wanted_m = upright.conjugate() * (rungs_m[leg] - risen_m);
+      foot_m += wanted_m - kinematics.seat_m(leg, input.angles_rad[leg]);
+    }
+  }
+  EXPECT_LE((odometry.update(input).position_odom_m - risen_m).norm(), 1e-9);
+}
+
+// A new claw that slides down its rung does not take the body's place with it; one that has borne
+// the steps of two others does count.
+TEST(Odometry, ANewFootSettlesWithoutMovingTheBody) {
+  const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+  PerLeg<Eigen::Vector3d> feet = feet_of(level);
+  const Eigen::Vector3d here = Eigen::Vector3d::Zero();
+  Odometry odometry(kParams.robot, kParams.odometry);
+  odometry.update(input_at(feet, here, level));
+  const auto step = [&](Leg leg) {
+    OdometryInput swinging = input_at(feet, here, level);
+    swinging.weight[leg] = 0.0;
+    odometry.update(swinging);
+    odometry.update(input_at(feet, here, level));
+  };
+  const auto slide = [&](Leg leg, double by_m) {
+    for (int i = 0; i < 300; ++i) {
+      feet[leg].x() += by_m / 300.0;
+      odometry.update(input_at(feet, here, level));
+    }
+    return odometry.estimate().position_odom_m.norm();
+  };
+  step(kRearRight);
+  EXPECT_LE(slide(kRearRight, 0.006), 0.0002);
+  step(kFrontRight);
+  EXPECT_LE(slide(kRearRight, 0.004), 0.0002);
+  step(kRearLeft);
+  EXPECT_GE(slide(kRearRight, 0.006), 0.001);
 }
 
 // A foot that slips while it is said to hold is named; small disagreement is not.
