@@ -6,6 +6,8 @@
 namespace climb_controller {
 namespace {
 
+constexpr std::int64_t kSuspicion_us = 1'000'000;  ///< longer ago, one sighting proves nothing
+
 Eigen::Vector3d middle_m(const climb::RungView& rung) {
   return 0.5 * (rung.end0_m + rung.end1_m);
 }
@@ -25,6 +27,10 @@ std::string check(const RungMemoryParams& params) {
   if (!(params.same_rung_m > 0.0 && params.same_rung_m < 0.1)) {
     return "same_rung_m must be above 0, below 0.1";
   }
+  if (!(params.damage_frames >= 1 && params.damage_frames <= params.sound_frames)) {
+    return "damage_frames must be 1..sound_frames";
+  }
+  if (!(params.sound_frames <= 1000)) return "sound_frames must be at most 1000";
   return "";
 }
 
@@ -38,21 +44,53 @@ void RungMemory::complete(std::int64_t now_us, const Eigen::Isometry3d& T_odom_b
     return (T_body_odom * middle_m(rung)).x() >= params_.ahead_m;
   };
   for (std::size_t i = 0; i < snapshot.rungs.size(); ++i) {
-    if (snapshot.rungs[i].trusted) learn(now_us, static_cast<int>(i), is_ahead, snapshot);
+    const climb::RungView& seen = snapshot.rungs[i];
+    if (seen.damaged) {
+      learn_damage(now_us, seen);
+    } else if (seen.trusted) {
+      learn(now_us, static_cast<int>(i), is_ahead(seen), snapshot);
+    }
   }
   if (snapshot.confirmed) confirmed_us_ = now_us;
   bool is_any_added = false;
   for (const Remembered& each : remembered_) {
-    if (is_ahead(each.rung)) continue;
-    add(each, snapshot);
-    is_any_added = true;
+    if (each.is_damaged) {
+      spoil(each, is_ahead(each.rung), snapshot);
+    } else if (!is_ahead(each.rung)) {
+      add(each, snapshot);
+      is_any_added = true;
+    }
   }
   const bool was_ladder = now_us - confirmed_us_ <= memory_us;
   snapshot.confirmed = snapshot.confirmed || (is_any_added && was_ladder);
 }
 
-template <class IsAhead>
-void RungMemory::learn(std::int64_t now_us, int index, const IsAhead& is_ahead,
+RungMemory::Remembered* RungMemory::find(const climb::RungView& seen) {
+  const auto known = std::find_if(remembered_.begin(), remembered_.end(),
+                                  [&](const Remembered& each) { return is_same(each.rung, seen); });
+  return known == remembered_.end() ? nullptr : &*known;
+}
+
+RungMemory::Remembered* RungMemory::begin(const climb::RungView& seen) {
+  if (remembered_.size() >= kMaxRungs) return nullptr;
+  remembered_.emplace_back();
+  remembered_.back().rung = seen;
+  return &remembered_.back();
+}
+
+void RungMemory::learn_damage(std::int64_t now_us, const climb::RungView& seen) {
+  Remembered* known = find(seen);
+  if (known == nullptr) known = begin(seen);
+  if (known == nullptr) return;
+  // Something before a rung that passes is no damage.
+  if (!known->is_damaged && now_us - known->suspected_us > kSuspicion_us) known->damage = 0;
+  known->seen_us = known->suspected_us = now_us;
+  known->damage = seen.trusted ? params_.sound_frames : known->damage + 1;
+  known->damage = std::min(known->damage, params_.sound_frames);
+  if (known->damage >= params_.damage_frames) known->is_damaged = true;
+}
+
+void RungMemory::learn(std::int64_t now_us, int index, bool is_ahead,
                        const RungsSnapshot& snapshot) {
   const climb::RungView& seen = snapshot.rungs[static_cast<std::size_t>(index)];
   Remembered learned;
@@ -63,29 +101,49 @@ void RungMemory::learn(std::int64_t now_us, int index, const IsAhead& is_ahead,
     learned.stretches[learned.num_stretches++] = stretch;
     learned.graspable_m += stretch.to_m - stretch.from_m;
   }
-  const auto known = std::find_if(remembered_.begin(), remembered_.end(),
-                                  [&](const Remembered& each) { return is_same(each.rung, seen); });
-  const bool is_full = remembered_.size() >= kMaxRungs;
-  if (known != remembered_.end()) {
-    learned.rung.confidence = std::max(learned.rung.confidence, known->rung.confidence);
-    known->rung.confidence = learned.rung.confidence;
+  Remembered* known = find(seen);
+  if (known == nullptr) {
+    if (!(learned.graspable_m > 0.0)) return;
+    known = begin(seen);
+    if (known != nullptr) *known = learned;
+    return;
   }
-  if (known == remembered_.end()) {
-    if (!seen.damaged && learned.graspable_m > 0.0 && !is_full) remembered_.push_back(learned);
-  } else if (is_ahead(seen)) {
+  // What once looked damaged looks sound again: after as many looks as it takes, it is.
+  if (known->damage > 0 && --known->damage == 0) known->is_damaged = false;
+  learned.damage = known->damage;
+  learned.is_damaged = known->is_damaged;
+  learned.suspected_us = known->suspected_us;
+  learned.rung.confidence = std::max(learned.rung.confidence, known->rung.confidence);
+  known->rung.confidence = learned.rung.confidence;
+  if (is_ahead) {
     *known = learned;
-    if (seen.damaged || !(learned.graspable_m > 0.0)) remembered_.erase(known);
-  } else if (!seen.damaged) {
-    // Where own legs hide parts of it: the place is news, its thickness is not, and what could be
-    // grasped of it only when it is more.
-    known->rung.end0_m = seen.end0_m;
-    known->rung.end1_m = seen.end1_m;
-    known->seen_us = now_us;
-    if (learned.graspable_m <= known->graspable_m) return;
-    known->stretches = learned.stretches;
-    known->num_stretches = learned.num_stretches;
-    known->graspable_m = learned.graspable_m;
+    if (!(learned.graspable_m > 0.0) && learned.damage == 0) forget(known);
+    return;
   }
+  // Where own legs hide parts of it: the place is news, its thickness is not, and what could be
+  // grasped of it only when it is more.
+  known->rung.end0_m = seen.end0_m;
+  known->rung.end1_m = seen.end1_m;
+  known->seen_us = now_us;
+  if (learned.graspable_m <= known->graspable_m) return;
+  known->stretches = learned.stretches;
+  known->num_stretches = learned.num_stretches;
+  known->graspable_m = learned.graspable_m;
+}
+
+void RungMemory::forget(Remembered* known) {
+  remembered_.erase(remembered_.begin() + (known - remembered_.data()));
+}
+
+void RungMemory::spoil(const Remembered& remembered, bool is_ahead, RungsSnapshot& snapshot) const {
+  bool is_seen = false;
+  for (climb::RungView& seen : snapshot.rungs) {
+    if (!is_same(seen, remembered.rung)) continue;
+    seen.damaged = is_seen = true;
+  }
+  if (is_seen || is_ahead || snapshot.rungs.size() == snapshot.rungs.capacity()) return;
+  snapshot.rungs.push_back(remembered.rung);
+  snapshot.rungs.back().damaged = true;
 }
 
 void RungMemory::add(const Remembered& remembered, RungsSnapshot& snapshot) const {
@@ -94,9 +152,7 @@ void RungMemory::add(const Remembered& remembered, RungsSnapshot& snapshot) cons
   for (std::size_t i = 0; i < snapshot.rungs.size(); ++i) {
     const climb::RungView& seen = snapshot.rungs[i];
     if (!is_same(seen, rung)) continue;
-    if (seen.trusted && seen.damaged) return;
     index = static_cast<int>(i);
-    if (seen.damaged) continue;
     // Seen again, though perhaps not well enough to be trusted anew: there it is.
     const Eigen::Vector3d moved_m = off_line_m(middle_m(rung), seen);
     rung.end0_m += moved_m;

@@ -2,8 +2,9 @@
 // Rungs stay where they were. The front heads see a rung well while it passes them; then the
 // robot's own legs hide it, just when a claw wants it: a front leg its own target, all legs what
 // lies under the belly. A rung that was trusted and sound is therefore remembered for a while, in
-// odom; what is seen of it now moves it, and damage seen now counts. Farther ahead nothing is
-// remembered.
+// odom; what is seen of it now moves it. Farther ahead no sound rung is remembered.
+// Damage is remembered wherever it was seen: of a trusted rung at once, of one that is not trusted
+// once it was seen several times. It wins over what looks sound until that was seen for long.
 #pragma once
 
 #include <array>
@@ -23,6 +24,8 @@ struct RungMemoryParams {
   /// target, at most so far ahead).
   double ahead_m = 0.70;
   double same_rung_m = 0.05;  ///< nearer axes are the same rung (own: a fifth of a spacing)
+  int damage_frames = 3;      ///< messages with a damaged rung that is not trusted (own)
+  int sound_frames = 12;  ///< ... with a sound, trusted one, until it is no longer damaged (own)
 };
 
 /// "" or the violated relation, naming the field.
@@ -45,10 +48,16 @@ class RungMemory {
     std::size_t num_stretches = 0;
     double graspable_m = 0.0;  ///< all stretches together
     std::int64_t seen_us = 0;
+    std::int64_t suspected_us = -1'000'000'000'000;  ///< seen damaged
+    int damage = 0;  ///< messages that say so, less those that say that it is sound
+    bool is_damaged = false;
   };
-  template <class IsAhead>
-  void learn(std::int64_t now_us, int index, const IsAhead& is_ahead,
-             const RungsSnapshot& snapshot);
+  Remembered* find(const climb::RungView& seen);
+  Remembered* begin(const climb::RungView& seen);
+  void forget(Remembered* known);
+  void learn(std::int64_t now_us, int index, bool is_ahead, const RungsSnapshot& snapshot);
+  void learn_damage(std::int64_t now_us, const climb::RungView& seen);
+  void spoil(const Remembered& remembered, bool is_ahead, RungsSnapshot& snapshot) const;
   void add(const Remembered& remembered, RungsSnapshot& snapshot) const;
   bool is_same(const climb::RungView& a, const climb::RungView& b) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rungs are remembered below the head of the robot, and only there, and only sound ones.
+// Sound rungs are remembered below the head of the robot, and only there; damage everywhere.
 #include "climb_controller/rung_memory.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST_F(RungMemoryTest, ForgetsInTime) {
   EXPECT_TRUE(snapshot_.rungs.empty());
 }
 
-/// What was never trusted, or was damaged, is not remembered.
+/// What was never trusted is not remembered, and a damaged rung only as such.
 TEST_F(RungMemoryTest, LearnsSoundRungsOnly) {
   see(0.6, true, true);
   complete(0.0, 0.0);
@@ -87,6 +87,14 @@ TEST_F(RungMemoryTest, LearnsSoundRungsOnly) {
   complete(0.1, 0.0);
   see_nothing();
   complete(1.0, 0.5);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_TRUE(snapshot_.rungs[0].damaged);
+  EXPECT_TRUE(snapshot_.stretches.empty());
+  memory_ = RungMemory(RungMemoryParams{});
+  see(0.6, false);
+  complete(2.0, 0.0);
+  see_nothing();
+  complete(3.0, 0.5);
   EXPECT_TRUE(snapshot_.rungs.empty());
 }
 
@@ -103,15 +111,68 @@ TEST_F(RungMemoryTest, KeepsTheBestConfidence) {
   EXPECT_DOUBLE_EQ(snapshot_.rungs[0].confidence, 1.0);
 }
 
-/// Damage that is seen now counts, wherever the rung is.
+/// Damage that is seen counts, wherever the rung is, and goes on counting when the rung is hidden
+/// or looks sound once.
 TEST_F(RungMemoryTest, DamageSeenCounts) {
+  for (const double body_m : {0.0, 0.5}) {
+    see(0.6);
+    complete(0.0, 0.0);
+    see(0.6, true, true);
+    complete(1.0, body_m);
+    ASSERT_EQ(snapshot_.rungs.size(), 1U);
+    EXPECT_TRUE(snapshot_.rungs[0].damaged);
+    EXPECT_TRUE(snapshot_.stretches.empty());
+    see(0.6);
+    complete(1.1, body_m);
+    EXPECT_TRUE(snapshot_.rungs[0].damaged);
+    see_nothing();
+    complete(2.0, 0.5);
+    ASSERT_EQ(snapshot_.rungs.size(), 1U);
+    EXPECT_TRUE(snapshot_.rungs[0].damaged);
+    memory_ = RungMemory(RungMemoryParams{});
+  }
+}
+
+/// Of a rung that is not trusted one damaged look proves nothing, three within a second do.
+TEST_F(RungMemoryTest, DamageOfAnUntrustedRungCountsWhenItLasts) {
   see(0.6);
   complete(0.0, 0.0);
-  see(0.6, true, true);
-  complete(1.0, 0.5);
+  for (const double at_s : {1.0, 3.0, 5.0, 5.1}) {
+    see(0.6, false, true);
+    complete(at_s, 0.5);
+    see_nothing();
+    complete(at_s + 0.01, 0.5);
+    ASSERT_EQ(snapshot_.rungs.size(), 1U) << at_s;
+    EXPECT_FALSE(snapshot_.rungs[0].damaged) << at_s;
+  }
+  see(0.6, false, true);
+  complete(5.2, 0.5);
+  see_nothing();
+  complete(5.3, 0.5);
   ASSERT_EQ(snapshot_.rungs.size(), 1U);
   EXPECT_TRUE(snapshot_.rungs[0].damaged);
-  EXPECT_TRUE(snapshot_.stretches.empty());
+}
+
+/// What looked damaged is sound again once it was seen so, and trusted, for long enough.
+TEST_F(RungMemoryTest, SoundLooksClearDamage) {
+  see(0.6, true, true);
+  complete(0.0, 0.0);
+  for (int i = 1; i < 12; ++i) {
+    see(0.6);
+    complete(0.1 * i, 0.0);
+    ASSERT_TRUE(snapshot_.rungs[0].damaged) << i;
+    see(0.6, false);
+    complete(0.1 * i + 0.05, 0.0);
+    ASSERT_TRUE(snapshot_.rungs[0].damaged) << i;
+  }
+  see(0.6);
+  complete(2.0, 0.0);
+  EXPECT_FALSE(snapshot_.rungs[0].damaged);
+  see_nothing();
+  complete(3.0, 0.5);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_FALSE(snapshot_.rungs[0].damaged);
+  ASSERT_EQ(snapshot_.stretches.size(), 1U);
 }
 
 /// A rung that is seen but not trusted any more takes its trust from memory and its place from
