@@ -326,6 +326,7 @@ void read(ConfigTable table, climb::ControllerParams& p) {
   table.read("max_shifts", p.max_shifts, {0, 10});
   table.read("reset_after_s", p.reset_after_s, {0.0, 10.0});
   table.read("put_down_after_s", p.put_down_after_s, {0.0, 10.0});
+  table.read("look_again_s", p.look_again_s, {0.0, 60.0});
   table.read("torque_ramp_s", p.torque_ramp_s, {0.0, 10.0});
   table.read("max_sag_m", p.max_sag_m, {0.0, 0.1});
   table.read("max_borne_part", p.max_borne_part, {0.0, 1.0});

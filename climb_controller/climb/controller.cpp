@@ -40,11 +40,12 @@ std::string check(const ControllerParams& p) {
   }
   if (!(p.torque_ramp_s >= 0.01)) return "torque_ramp_s must be 0.01 or more";
   const double times_s[] = {p.selftest_s,       p.enable_timeout_s, p.dock_timeout_s,
-                            p.put_down_after_s, p.torque_ramp_s,    p.reset_after_s};
+                            p.put_down_after_s, p.torque_ramp_s,    p.reset_after_s,
+                            p.look_again_s};
   for (const double time_s : times_s) {
     if (!(time_s >= 0.0 && time_s <= 3600.0)) {
-      return "selftest_s, enable_timeout_s, dock_timeout_s, put_down_after_s, torque_ramp_s and "
-             "reset_after_s must be 0..3600";
+      return "selftest_s, enable_timeout_s, dock_timeout_s, put_down_after_s, torque_ramp_s, "
+             "reset_after_s and look_again_s must be 0..3600";
     }
   }
   return "";
@@ -223,7 +224,7 @@ bool Controller::take(ControllerEvent event) {
   const std::optional<ControllerState> next = after(state_, event);
   if (!next) return false;
   state_ = *next;
-  in_state_s_ = 0.0;
+  in_state_s_ = looked_s_ = 0.0;
   if (state_ == S::kHold || state_ == S::kDisarmed) ending_ = Ending::kNone;
   if (state_ == S::kDisarmed || state_ == S::kEstop) {
     following_ = false;

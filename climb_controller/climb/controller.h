@@ -32,6 +32,7 @@ struct ControllerParams {
   double max_sag_m = 0.004;       ///< of the body in the dock, without feed-forward
   double max_borne_part = 0.5;    ///< of the weight on the claws: more, and no dock is there
   double reset_after_s = 0.3;     ///< no reset before everything stands
+  double look_again_s = 2.0;      ///< for rungs that are not trusted just now, and at the top
 };
 
 /// "" or the violated relation, naming the field.
@@ -71,6 +72,7 @@ class Controller {
   void start_following(const ControllerInput& input);
   PerLeg<bool> claws_round_rungs() const;
   bool begin_shift(const PerLeg<LegAngles>& told_rad, const PerLeg<LegAngles>& measured_rad);
+  bool looks_again();
   bool end_step();
   bool ends_here(const RobotNow& now) const;
   void search(Leg leg, const ControllerInput& input);
@@ -123,6 +125,8 @@ class Controller {
   Ending ending_ = Ending::kNone;
   int num_shifts_ = 0;         ///< before the step that is next
   int num_steps_to_rest_ = 0;  ///< since HOLD was ordered
+  double looked_s_ = 0.0;      ///< standing, for a rung that could be trusted
+  bool was_top_ = false;       ///< ... and seen to be at the top all that time
   bool stepping_ = false;      ///< a limb of the crawl is on its way
   bool withdrawn_ = false;     ///< its target is gone
   bool following_ = false;     ///< targets are sent

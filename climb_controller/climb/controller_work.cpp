@@ -125,6 +125,7 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) {
     const bool may_shift = num_shifts_ < params_.max_shifts;
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
+    if (looks_again()) return;
     ends = !plan_.ready && !plan_.at_dock;
   }
   if (!ends && !plan_.move.is_none()) {
@@ -142,6 +143,28 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) return;
   rests_safely_ = planner_.rests_safely(now);
   take(E::kHold);
+}
+
+bool Controller::looks_again() {
+  // Trust comes and goes: what is not there, or not good enough, is looked at for a while. The top
+  // is the top when nothing was seen above it all that time.
+  const bool may_pass =
+      plan_.at_top || plan_.refusal == Refusal::kNoLadder ||
+      plan_.refusal == Refusal::kNotTrusted || plan_.refusal == Refusal::kLowConfidence ||
+      plan_.refusal == Refusal::kUncertain || plan_.refusal == Refusal::kNoStretch;
+  if (plan_.ready || !may_pass) {
+    looked_s_ = 0.0;
+    return false;
+  }
+  was_top_ = plan_.at_top && (was_top_ || looked_s_ <= 0.0);
+  looked_s_ += params_.gate.period_s;
+  if (looked_s_ < params_.look_again_s) return true;
+  looked_s_ = 0.0;
+  if (plan_.at_top && !was_top_) {
+    plan_.at_top = false;
+    plan_.refusal = Refusal::kNotTrusted;
+  }
+  return false;
 }
 
 bool Controller::begin_shift(const PerLeg<LegAngles>& told_rad,

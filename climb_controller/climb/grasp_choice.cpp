@@ -105,6 +105,7 @@ GraspDecision GraspChoice::choose(const LadderView& ladder, const GraspQuery& qu
     decision.refusal = Refusal::kStale;
   } else if (ladder.confirmed) {
     const int num_rungs = std::min(static_cast<int>(ladder.rungs.size()), max_rungs_);
+    bool is_any_within = false;
     for (int i = 0; i < num_rungs; ++i) {
       GraspTarget target;
       const Refusal refusal = judge(ladder, i, query, target);
@@ -116,7 +117,12 @@ GraspDecision GraspChoice::choose(const LadderView& ladder, const GraspQuery& qu
         if (decision.refusal != Refusal::kNone || cheaper) decision.target = target;
         decision.refusal = Refusal::kNone;
       } else if (decision.refusal != Refusal::kNone) {
-        decision.refusal = std::max(decision.refusal, refusal);  // checks run in this order
+        // Why the rung that it should be is none; the others were never meant. Of several the one
+        // that came furthest: checks run in this order.
+        const bool is_within = is_within_step(ladder.rungs[i], query);
+        if (is_within && !is_any_within) decision.refusal = refusal;
+        if (is_within == is_any_within) decision.refusal = std::max(decision.refusal, refusal);
+        is_any_within = is_any_within || is_within;
       }
     }
   }
@@ -137,6 +143,16 @@ Refusal GraspChoice::judge(const LadderView& ladder, int rung_index, const Grasp
   return refusal;
 }
 
+double GraspChoice::step_to_m(const RungView& rung, const GraspQuery& query) {
+  const Eigen::Vector3d ahead = (query.upwards ? 1.0 : -1.0) * query.T_odom_body.linear().col(0);
+  return ahead.dot(0.5 * (rung.end0_m + rung.end1_m) - query.from_m);
+}
+
+bool GraspChoice::is_within_step(const RungView& rung, const GraspQuery& query) const {
+  const double step = step_to_m(rung, query);
+  return step >= params_.min_step_m && step <= params_.max_step_m;
+}
+
 Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,
                                 GraspTarget& target) const {
   if (!finite(rung)) return Refusal::kNotFinite;
@@ -155,10 +171,9 @@ Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,
       std::hypot(sigma_across_m(rung.covariance_m2, target.rung_axis), query.body_sigma_m);
   if (!(target.sigma_m <= params_.max_sigma_m)) return Refusal::kUncertain;
 
-  const Eigen::Vector3d ahead = (query.upwards ? 1.0 : -1.0) * query.T_odom_body.linear().col(0);
-  const double step_m = ahead.dot(0.5 * (rung.end0_m + rung.end1_m) - query.from_m);
-  if (!(step_m >= params_.min_step_m)) return Refusal::kNotAhead;
-  return step_m <= params_.max_step_m ? Refusal::kNone : Refusal::kTooFarAhead;
+  const double step = step_to_m(rung, query);
+  if (!(step >= params_.min_step_m)) return Refusal::kNotAhead;
+  return step <= params_.max_step_m ? Refusal::kNone : Refusal::kTooFarAhead;
 }
 
 Refusal GraspChoice::place(const LadderView& ladder, int rung_index, const GraspQuery& query,

@@ -107,8 +107,9 @@ struct RungDecision {
 
 /// Valid until the next choose().
 struct GraspDecision {
-  Refusal refusal = Refusal::kNoLadder;  ///< kNone = target is set; else the refusal of the rung
-                                         ///< that came farthest
+  /// kNone = target is set; else the refusal of the rung that is a step away, or where none is, of
+  /// the one that came farthest.
+  Refusal refusal = Refusal::kNoLadder;
   GraspTarget target;
   std::span<const RungDecision> rungs;  ///< parallel to LadderView::rungs
 };
@@ -123,6 +124,9 @@ class GraspChoice {
  private:
   Refusal judge(const LadderView& ladder, int rung_index, const GraspQuery& query,
                 GraspTarget& target) const;
+  /// Along the ladder, from where the leg is, in the way it goes.
+  static double step_to_m(const RungView& rung, const GraspQuery& query);
+  bool is_within_step(const RungView& rung, const GraspQuery& query) const;
   Refusal judge_rung(const RungView& rung, const GraspQuery& query, GraspTarget& target) const;
   Refusal place(const LadderView& ladder, int rung_index, const GraspQuery& query,
                 GraspTarget& target) const;

@@ -13,6 +13,8 @@ constexpr double kAhead_m = 0.10;  ///< less than half the distance of two rungs
 constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
+constexpr double kNextRung_m = 0.60;     ///< the next rung is at most so far above: two spacings
+constexpr double kInLine_m = 0.10;       ///< the middle of a rung off the line through another's
 constexpr double kInPlace_m = 0.008;     ///< a body so near to where a step wants it is not shifted
 constexpr double kMaxSideways_m = 0.02;  ///< of one shift, across the ladder and out of it
 constexpr double kStraight_rad = 0.02;   ///< a body so little askew is not turned
@@ -289,12 +291,26 @@ double StepPlanner::spacing_m(const LadderView& ladder) const {
   return is_ladder ? mean_m : kUsualSpacing_m;
 }
 
+bool StepPlanner::goes_on_above(const RungView& top, const RobotNow& now,
+                                const LadderView& ladder) const {
+  // What is seen above it, in line with the ladder, may be a rung that is not trusted just now.
+  const Eigen::Vector3d up = now.pose.T_odom_body().linear().col(0);
+  for (const RungView& rung : ladder.rungs) {
+    if (!(rung.end0_m.allFinite() && rung.end1_m.allFinite())) continue;
+    const Eigen::Vector3d off_m = 0.5 * (rung.end0_m + rung.end1_m - top.end0_m - top.end1_m);
+    const double above_m = off_m.dot(up);
+    const bool is_next = above_m >= params_.grasp.min_step_m && above_m <= kNextRung_m;
+    if (is_next && (off_m - above_m * up).norm() <= kInLine_m) return true;
+  }
+  return false;
+}
+
 bool StepPlanner::is_at_top(const RobotNow& now, const LadderView& ladder) const {
   const RungView* top = nullptr;
   for (const RungView& rung : ladder.rungs) {
     if (is_usable(rung) && (top == nullptr || height_m(rung) > height_m(*top))) top = &rung;
   }
-  if (top == nullptr) return false;
+  if (top == nullptr || goes_on_above(*top, now, ladder)) return false;
   // By place, not by number: perception that starts anew counts its rungs anew.
   const Eigen::Isometry3d T_odom_body = now.pose.T_odom_body();
   for (const Leg leg : {kFrontLeft, kFrontRight}) {

@@ -84,6 +84,7 @@ class StepPlanner {
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;
+  bool goes_on_above(const RungView& top, const RobotNow& now, const LadderView& ladder) const;
 
   ClimbParams params_;
   LegKinematics kinematics_;

@@ -181,8 +181,55 @@ TEST_F(StanceTest, KnowsTheTopByPlace) {
   stand_.rungs.push_back(nonsense);
   run(0.1);
   order(Order::kClimb);
-  ASSERT_TRUE(reach(S::kHold, 1.0)) << where();
+  ASSERT_TRUE(reach(S::kHold, 3.0)) << where();
   EXPECT_TRUE(output_.at_top) << where();
+}
+
+// Below a rung that is seen but not trusted it is not at the top: it holds for that reason, and
+// when the rung is trusted while it looks again it goes on.
+TEST_F(StanceTest, ARungNotTrustedIsNoTop) {
+  stand_.rungs.back().trusted = false;
+  ASSERT_TRUE(arm());
+  order(Order::kClimb);
+  ASSERT_TRUE(reach(S::kHold, 400.0)) << where();
+  EXPECT_FALSE(output_.at_top);
+  EXPECT_EQ(output_.refusal, Refusal::kNotTrusted) << where();
+  order(Order::kClimb);
+  run(1.0);
+  EXPECT_EQ(output_.state, S::kClimbing) << where();
+  stand_.rungs.back().trusted = true;
+  ASSERT_TRUE(reach(S::kHold, 100.0)) << where();
+  EXPECT_TRUE(output_.at_top) << where();
+  EXPECT_EQ(output_.rung_ids[kFrontLeft], 9);
+}
+
+// A rung that is seen above only now and then is no top either, and what is far off the ladder's
+// line or higher than any next rung does not count.
+TEST_F(StanceTest, TheTopIsThatWhileItLooks) {
+  ASSERT_TRUE(arm());
+  order(Order::kClimb);
+  ASSERT_TRUE(reach(S::kHold, 400.0)) << where();
+  ASSERT_TRUE(output_.at_top);
+  stand_.add_rung_at(10.0);
+  RungView& above = stand_.rungs.back();
+  above.trusted = false;
+  const RungView next = above;
+  const auto look = [&](const Eigen::Vector3d& off_m, bool flickers) {
+    order(Order::kClimb);
+    for (int i = 0; i < 3000 && output_.state != S::kHold; ++i) {
+      const bool is_seen = !flickers || i % 50 == 0;
+      above.end0_m.setConstant(climb_tests::kNan);
+      if (is_seen) above.end0_m = next.end0_m + off_m;
+      above.end1_m = next.end1_m + off_m;
+      cycle();
+    }
+    EXPECT_EQ(output_.state, S::kHold) << where();
+    return output_.at_top;
+  };
+  EXPECT_FALSE(look({0.0, 0.0, 0.0}, false));
+  EXPECT_FALSE(look({0.0, 0.0, 0.0}, true));
+  EXPECT_TRUE(look({0.0, 0.0, 0.9}, false));
+  EXPECT_TRUE(look({0.3, 0.0, 0.0}, false));
 }
 
 // A long ladder is climbed to its end: errors of the odometry do not add up against the rungs.
