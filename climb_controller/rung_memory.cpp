@@ -56,7 +56,7 @@ void RungMemory::complete(std::int64_t now_us, const Eigen::Isometry3d& T_odom_b
   for (const Remembered& each : remembered_) {
     if (each.is_damaged) {
       spoil(each, is_ahead(each.rung), snapshot);
-    } else if (!is_ahead(each.rung)) {
+    } else if (!is_ahead(each.rung) && each.graspable_m > 0.0) {
       add(each, snapshot);
       is_any_added = true;
     }
@@ -75,6 +75,7 @@ RungMemory::Remembered* RungMemory::begin(const climb::RungView& seen) {
   if (remembered_.size() >= kMaxRungs) return nullptr;
   remembered_.emplace_back();
   remembered_.back().rung = seen;
+  remembered_.back().rung.damaged = false;  // that is told beside it
   return &remembered_.back();
 }
 
@@ -115,7 +116,8 @@ void RungMemory::learn(std::int64_t now_us, int index, bool is_ahead,
   learned.suspected_us = known->suspected_us;
   learned.rung.confidence = std::max(learned.rung.confidence, known->rung.confidence);
   known->rung.confidence = learned.rung.confidence;
-  if (is_ahead) {
+  const bool was_sound = known->graspable_m > 0.0;
+  if (is_ahead || !was_sound) {
     *known = learned;
     if (!(learned.graspable_m > 0.0) && learned.damage == 0) forget(known);
     return;
@@ -143,7 +145,7 @@ void RungMemory::spoil(const Remembered& remembered, bool is_ahead, RungsSnapsho
   }
   if (is_seen || is_ahead || snapshot.rungs.size() == snapshot.rungs.capacity()) return;
   snapshot.rungs.push_back(remembered.rung);
-  snapshot.rungs.back().damaged = true;
+  snapshot.rungs.back().trusted = snapshot.rungs.back().damaged = true;
 }
 
 void RungMemory::add(const Remembered& remembered, RungsSnapshot& snapshot) const {
