@@ -13,7 +13,9 @@ using S = climb::ControllerState;
 constexpr int kStartRung = 2;  ///< of the front claws in the dock
 constexpr std::int64_t kThinking_us = 300'000;
 constexpr std::int64_t kReleasing_us = 200'000;   ///< of the E-stop
-constexpr std::int64_t kPatience_us = 5'000'000;  ///< in HOLD, DISARMED or latched with no way on
+constexpr std::int64_t kPatience_us = 5'000'000;  ///< in DISARMED or latched
+/// While no limb moves, however often it is sent up: there is no way on.
+constexpr std::int64_t kNoWayOn_us = 10'000'000;
 constexpr std::uint64_t kLadderStream = 11;
 
 double between(double low, double high, base::Rng& rng) {
@@ -54,6 +56,7 @@ class Operator {
   /// Before each cycle.
   void act() {
     if (box_.state() != state_) enter(box_.state());
+    if (is_any_limb_under_way()) moved_us_ = box_.now_us();
     if (climb::is_latched(state_) && in_state_us() == kReleasing_us)
       box_.plant().press_estop(false);
     if (in_state_us() == 0 || in_state_us() % kThinking_us != 0) return;
@@ -74,8 +77,10 @@ class Operator {
   }
   /// No way on from here, or no more patience.
   bool gives_up() const {
-    const bool stands = state_ == S::kHold || state_ == S::kDisarmed || climb::is_latched(state_);
-    return num_stops_ > params_.max_stops || (stands && in_state_us() > kPatience_us);
+    const bool stands = state_ == S::kDisarmed || climb::is_latched(state_);
+    const bool has_no_way_on = state_ == S::kHold && box_.now_us() - moved_us_ > kNoWayOn_us;
+    return num_stops_ > params_.max_stops || has_no_way_on ||
+           (stands && in_state_us() > kPatience_us);
   }
 
  private:
@@ -85,6 +90,12 @@ class Operator {
     state_ = state;
     since_us_ = box_.now_us();
   }
+  bool is_any_limb_under_way() const {
+    for (const climb::Leg leg : climb::kLegs) {
+      if (box_.controller().limb(leg).moves()) return true;
+    }
+    return false;
+  }
   std::int64_t in_state_us() const { return box_.now_us() - since_us_; }
   bool needs_reset() const { return box_.report().bus_faults.size > 0; }
 
@@ -92,6 +103,7 @@ class Operator {
   ClimbBox& box_;
   S state_ = S::kBoot;
   std::int64_t since_us_ = 0;
+  std::int64_t moved_us_ = 0;
   int num_stops_ = 0;
 };
 
