@@ -78,17 +78,24 @@ std::string json_line(const Task& task, ClimbEnd end, FullClimb& full, double wa
   char text[1200];
   std::snprintf(
       text, sizeof text,
-      "{\"seed\": %llu, \"damage\": \"%s\", \"spacing_m\": %.3f, \"end\": \"%s\", \"reason\": "
+      "{\"seed\": %llu, \"damage\": \"%s\", \"rungs\": %d, \"spacing_m\": %.3f, \"end\": \"%s\", "
+      "\"reason\": "
       "\"%s\", \"rungs_climbed\": %d, \"falls\": %d, \"grasps_tried\": %d, \"grasps_failed\": %d, "
       "\"unsafe_grasps\": %d, \"min_support\": %d, \"seconds\": %.1f, \"peak_joint_torque_Nm\": "
       "%.1f, \"peak_grip_N\": %.0f, \"pose_drift_mm\": %.1f, \"violations\": %zu, \"wall_s\": "
       "%.1f}",
       static_cast<unsigned long long>(task.seed), task.damage.c_str(),
-      task.params.climb.scene.spacing_m, name(end), full.climb().reason().c_str(), f.rungs_climbed,
-      f.falls, f.grasps_tried, f.grasps_failed, f.num_unsafe_grasps, f.min_support, f.seconds,
-      f.peak_joint_torque_Nm, f.peak_grip_N, f.pose_drift_mm,
-      full.climb().box().monitor().violations().size(), wall_s);
+      task.params.climb.scene.num_rungs, task.params.climb.scene.spacing_m, name(end),
+      full.climb().reason().c_str(), f.rungs_climbed, f.falls, f.grasps_tried, f.grasps_failed,
+      f.num_unsafe_grasps, f.min_support, f.seconds, f.peak_joint_torque_Nm, f.peak_grip_N,
+      f.pose_drift_mm, full.climb().box().monitor().violations().size(), wall_s);
   return text;
+}
+
+std::string crashed_line(const Task& task) {
+  return "{\"seed\": " + std::to_string(task.seed) + ", \"damage\": \"" + task.damage +
+         "\", \"rungs\": " + std::to_string(task.params.climb.scene.num_rungs) +
+         ", \"end\": \"crashed\"}";
 }
 
 /// Every message of the climb into an LCM log, up to log_s.
@@ -163,11 +170,10 @@ int main(int argc, char** argv) {
   parse(app, arguments);
   CLI11_PARSE(app, argc, argv);
   std::ofstream lines(arguments.json_path, std::ios::app);
-  const auto tell = [&](bool ended_well, const std::string& line) {
-    const std::string told = ended_well ? line : "{\"end\": \"crashed\"}";
-    std::printf("%s\n", told.c_str());
+  const auto tell = [&lines](const std::string& line) {
+    std::printf("%s\n", line.c_str());
     std::fflush(stdout);
-    if (lines) lines << told << std::endl;
+    if (lines) lines << line << std::endl;
   };
   try {
     runtime::Config::load(arguments.config_files, arguments.overrides);
@@ -177,7 +183,10 @@ int main(int argc, char** argv) {
       const int index = damaged ? i - arguments.num_plain : i;
       const Task task =
           task_of(arguments, arguments.first_seed + static_cast<std::uint64_t>(index), damaged);
-      pool.run([&arguments, task] { return run(arguments, task); }, tell);
+      pool.run([&arguments, task] { return run(arguments, task); },
+               [tell, task](bool ended_well, const std::string& line) {
+                 tell(ended_well ? line : crashed_line(task));
+               });
     }
     pool.finish();
     return 0;

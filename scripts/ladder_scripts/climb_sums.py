@@ -1,39 +1,74 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Adds the climbs of one run (one JSON object per line) to a file of climbs and sums them up. Exit 1 when a robot fell, or a plain
+"""Adds climbs (one JSON object per line) to a file of climbs and sums up all of them. A climb that is climbed again (the same ladder:
+plain or damaged, seed, number of rungs) takes the place of the one before. The lines are taken away once they are in the file.
+Exit 1 when a robot fell, a claw closed on an unsafe rung, an invariant was violated, a climb crashed or was not ended, or a plain
 ladder's top was not reached."""
 import collections
 import json
 import pathlib
 import sys
 
+UNFINISHED = ("crashed", "too long")
+
+
+def ladder_of(climb):
+    return (climb["damage"] != "plain", climb["seed"], climb["rungs"])
+
+
+def merge(before, after):
+    """Both in the order of their ladders; of one ladder only the last climb."""
+    climbs = {ladder_of(c): c for c in before + after}
+    return [climbs[ladder] for ladder in sorted(climbs)]
+
 
 def sums(climbs):
-    ends = collections.Counter((c.get("damage", "?"), c["end"], c.get("reason", "")) for c in climbs)
-    plain = [c for c in climbs if c.get("damage") == "plain"]
+    ends = collections.Counter((c["damage"], c["end"], c.get("reason", "")) for c in climbs)
+    plain = [c for c in climbs if c["damage"] == "plain"]
+
+    def total(key):
+        return sum(c.get(key, 0) for c in climbs)
+
+    def most(key):
+        return max((c.get(key, 0) for c in climbs), default=0)
+
     return {
         "climbs": len(climbs),
         "plain": len(plain),
         "plain_tops": sum(c["end"] == "top" for c in plain),
-        "tops": sum(c["end"] == "top" for c in climbs),
-        "falls": sum(c.get("falls", 1) for c in climbs),
-        "unsafe_grasps": sum(c.get("unsafe_grasps", 0) for c in climbs),
-        "violations": sum(c.get("violations", 0) for c in climbs),
+        "damaged": len(climbs) - len(plain),
+        "damaged_tops": sum(c["end"] == "top" for c in climbs if c["damage"] != "plain"),
+        "damaged_holds": sum(c["end"] == "held" for c in climbs if c["damage"] != "plain"),
+        "unfinished": sum(c["end"] in UNFINISHED for c in climbs),
+        "falls": total("falls"),
+        "unsafe_grasps": total("unsafe_grasps"),
+        "violations": total("violations"),
+        "grasps_tried": total("grasps_tried"),
+        "grasps_failed": total("grasps_failed"),
+        "most_torque_Nm": most("peak_joint_torque_Nm"),
+        "most_grip_N": most("peak_grip_N"),
+        "most_drift_mm": most("pose_drift_mm"),
+        "minutes": round(total("wall_s") / 60.0, 1),
         "ends": [{"damage": d, "end": e, "reason": r, "climbs": n} for (d, e, r), n in sorted(ends.items())],
     }
 
 
+def is_good(result):
+    nothing_bad = not any(result[key] for key in ("falls", "unsafe_grasps", "violations", "unfinished"))
+    return nothing_bad and result["plain_tops"] == result["plain"] and result["climbs"] > 0
+
+
 def main():
-    lines, target, seconds = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3])
-    before = json.loads(target.read_text()) if target.exists() else {"each": [], "minutes": 0.0}
-    each = before["each"] + [json.loads(line) for line in lines.read_text().splitlines()]
+    lines, target = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    before = json.loads(target.read_text())["each"] if target.exists() else []
+    new = [json.loads(line) for line in lines.read_text().splitlines()] if lines.exists() else []
+    each = merge(before, new)
     result = sums(each)
-    result["minutes"] = round(before["minutes"] + seconds / 60, 1)
     print(json.dumps(result, indent=1))
-    result["each"] = each
-    target.write_text(json.dumps(result, indent=1) + "\n")
-    lines.unlink()
-    good = result["falls"] == 0 and result["plain_tops"] == result["plain"]
-    return 0 if good else 1
+    whole = target.with_suffix(target.suffix + ".new")  # a file that is half written takes the place of none
+    whole.write_text(json.dumps(result | {"each": each}, indent=1) + "\n")
+    whole.replace(target)
+    lines.unlink(missing_ok=True)
+    return 0 if is_good(result) else 1
 
 
 if __name__ == "__main__":
