@@ -187,6 +187,7 @@ void read(ConfigTable table, RungMemoryParams& p) {
   table.read("memory_s", p.memory_s);
   table.read("ahead_m", p.ahead_m);
   table.read("same_rung_m", p.same_rung_m);
+  table.read("clear_m", p.clear_m);
   table.read("damage_frames", p.damage_frames);
   table.read("sound_frames", p.sound_frames);
   table.require(check(p));

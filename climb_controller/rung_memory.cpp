@@ -27,6 +27,7 @@ std::string check(const RungMemoryParams& params) {
   if (!(params.same_rung_m > 0.0 && params.same_rung_m < 0.1)) {
     return "same_rung_m must be above 0, below 0.1";
   }
+  if (!(params.clear_m >= -2.0 && params.clear_m <= 2.0)) return "clear_m must be -2..2";
   if (!(params.damage_frames >= 1 && params.damage_frames <= params.sound_frames)) {
     return "damage_frames must be 1..sound_frames";
   }
@@ -40,13 +41,16 @@ void RungMemory::complete(std::int64_t now_us, const Eigen::Isometry3d& T_odom_b
   std::erase_if(remembered_,
                 [&](const Remembered& each) { return now_us - each.seen_us > memory_us; });
   const Eigen::Isometry3d T_body_odom = T_odom_body.inverse();
+  const auto ahead_m = [&](const climb::RungView& rung) {
+    return (T_body_odom * middle_m(rung)).x();
+  };
   const auto is_ahead = [&](const climb::RungView& rung) {
-    return (T_body_odom * middle_m(rung)).x() >= params_.ahead_m;
+    return ahead_m(rung) >= params_.ahead_m;
   };
   for (std::size_t i = 0; i < snapshot.rungs.size(); ++i) {
     const climb::RungView& seen = snapshot.rungs[i];
     if (seen.damaged) {
-      learn_damage(now_us, seen);
+      if (ahead_m(seen) >= params_.clear_m) learn_damage(now_us, seen);
     } else if (seen.trusted) {
       learn(now_us, static_cast<int>(i), is_ahead(seen), snapshot);
     }
@@ -154,7 +158,9 @@ void RungMemory::add(const Remembered& remembered, RungsSnapshot& snapshot) cons
   for (std::size_t i = 0; i < snapshot.rungs.size(); ++i) {
     const climb::RungView& seen = snapshot.rungs[i];
     if (!is_same(seen, rung)) continue;
+    if (seen.trusted && seen.damaged) return;
     index = static_cast<int>(i);
+    if (seen.damaged) continue;
     // Seen again, though perhaps not well enough to be trusted anew: there it is.
     const Eigen::Vector3d moved_m = off_line_m(middle_m(rung), seen);
     rung.end0_m += moved_m;

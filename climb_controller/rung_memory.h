@@ -3,8 +3,9 @@
 // robot's own legs hide it, just when a claw wants it: a front leg its own target, all legs what
 // lies under the belly. A rung that was trusted and sound is therefore remembered for a while, in
 // odom; what is seen of it now moves it. Farther ahead no sound rung is remembered.
-// Damage is remembered wherever it was seen: of a trusted rung at once, of one that is not trusted
-// once it was seen several times. It wins over what looks sound until that was seen for long.
+// Damage is remembered, where no own leg can pretend it: of a trusted rung at once, of one that is
+// not trusted once it was seen several times. It wins over what looks sound until that was seen for
+// long.
 #pragma once
 
 #include <array>
@@ -23,6 +24,10 @@ struct RungMemoryParams {
   /// Body x from which on only what is seen counts (run: a front leg under way hides its own
   /// target, at most so far ahead).
   double ahead_m = 0.70;
+  /// Body x from which on damage is remembered (run: between the own legs a quarter of all looks at
+  /// sound rungs says bent and sagged, farther ahead none of 4000). Nearer it counts at that
+  /// moment.
+  double clear_m = 0.40;
   double same_rung_m = 0.05;  ///< nearer axes are the same rung (own: a fifth of a spacing)
   int damage_frames = 3;      ///< messages with a damaged rung that is not trusted (own)
   int sound_frames = 12;  ///< ... with a sound, trusted one, until it is no longer damaged (own)

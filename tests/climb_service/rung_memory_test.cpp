@@ -111,10 +111,9 @@ TEST_F(RungMemoryTest, KeepsTheBestConfidence) {
   EXPECT_DOUBLE_EQ(snapshot_.rungs[0].confidence, 1.0);
 }
 
-/// Damage that is seen counts, wherever the rung is, and goes on counting when the rung is hidden
-/// or looks sound once.
+/// Damage that is seen counts, and goes on counting when the rung is hidden or looks sound once.
 TEST_F(RungMemoryTest, DamageSeenCounts) {
-  for (const double body_m : {0.0, 0.5}) {
+  for (const double body_m : {-0.3, 0.0, 0.15}) {
     see(0.6);
     complete(0.0, 0.0);
     see(0.6, true, true);
@@ -133,20 +132,36 @@ TEST_F(RungMemoryTest, DamageSeenCounts) {
   }
 }
 
+/// Between the own legs damage counts as long as it is seen, and a sound rung is sound again then.
+TEST_F(RungMemoryTest, DamageBetweenTheLegsIsNotRemembered) {
+  see(0.6);
+  complete(0.0, 0.0);
+  see(0.6, true, true);
+  complete(1.0, 0.3);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_TRUE(snapshot_.rungs[0].damaged);
+  EXPECT_TRUE(snapshot_.stretches.empty());
+  see_nothing();
+  complete(1.1, 0.3);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_FALSE(snapshot_.rungs[0].damaged);
+  EXPECT_EQ(snapshot_.stretches.size(), 1U);
+}
+
 /// Of a rung that is not trusted one damaged look proves nothing, three within a second do.
 TEST_F(RungMemoryTest, DamageOfAnUntrustedRungCountsWhenItLasts) {
   see(0.6);
   complete(0.0, 0.0);
   for (const double at_s : {1.0, 3.0, 5.0, 5.1}) {
     see(0.6, false, true);
-    complete(at_s, 0.5);
+    complete(at_s, 0.1);
     see_nothing();
     complete(at_s + 0.01, 0.5);
     ASSERT_EQ(snapshot_.rungs.size(), 1U) << at_s;
     EXPECT_FALSE(snapshot_.rungs[0].damaged) << at_s;
   }
   see(0.6, false, true);
-  complete(5.2, 0.5);
+  complete(5.2, 0.1);
   see_nothing();
   complete(5.3, 0.5);
   ASSERT_EQ(snapshot_.rungs.size(), 1U);
