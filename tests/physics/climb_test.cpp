@@ -43,6 +43,14 @@ TEST(PhysicalClimb, HangsOnFourClaws) {
   EXPECT_NEAR(down_N, 9.81 * mj_getTotalmass(&climb.model().model()), 5.0);
 }
 
+/// The thickest rungs of the scenes open the jaw widest, and are grasped all the same.
+TEST(PhysicalClimb, HangsOnThickRungs) {
+  PhysicalClimbParams params = ladder(5);
+  params.scene.rung_diameter_m = 0.030;
+  PhysicalClimb climb(params);
+  EXPECT_TRUE(climb.hang()) << climb.reason();
+}
+
 /// Rungs seen 5 mm, another 3 mm in each message and 1 degree off are climbed to the top, with
 /// three claws on rungs all the time and no drive at its limit; and down again into the dock.
 TEST(PhysicalClimb, ClimbsToTheTopAndBackIntoTheDock) {
@@ -55,6 +63,7 @@ TEST(PhysicalClimb, ClimbsToTheTopAndBackIntoTheDock) {
   EXPECT_GE(figures.min_support, 3);
   EXPECT_LT(figures.peak_joint_torque_Nm, 30.0);
   EXPECT_LT(figures.peak_grip_N, 186.0);  // tears a claw off
+  EXPECT_LT(figures.pose_drift_mm, 10.0);
   ASSERT_EQ(climb.climb(false, 180.0), ClimbEnd::kDock) << climb.reason();
   EXPECT_TRUE(climb.back_into_dock()) << climb.reason();
   EXPECT_EQ(figures.falls, 0);
