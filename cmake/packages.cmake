@@ -96,7 +96,7 @@ ladder_deb(robot ladder-robot misc "services of a ladder-climbing robot: depth h
 ladder_deb(simulator ladder-robot-simulator misc "simulated sensors, drives and scenes for ladder-robot" "${runtime_depends}, libmujoco2.2.2")
 ladder_deb(tools ladder-robot-tools misc "ladder-log and ladder-doctor: logs and the computer that ladder-robot runs on"
            "${service_depends}, python3 (>= 3.11), iproute2, ladder-msgs-dev (= ${PROJECT_VERSION})")
-ladder_deb(viewer ladder-robot-viewer misc "web viewer of ladder-robot, and a relay of its messages over TCP" "${service_depends}")
+ladder_deb(viewer ladder-robot-viewer misc "web viewer of ladder-robot, and a relay of its messages over TCP" "${runtime_depends}, libsystemd0")
 ladder_deb(spy ladder-robot-spy misc "lcm-spy with the messages and pictures of ladder-robot" "default-jre, liblcm-java, libjchart2d-java")
 ladder_deb(msgs ladder-msgs-dev devel "message types of ladder-robot for C++, Python and lcm-gen" "")
 set(CPACK_DEBIAN_MSGS_PACKAGE_SUGGESTS "liblcm-dev")
