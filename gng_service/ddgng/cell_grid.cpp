@@ -29,6 +29,7 @@ CellGrid::CellGrid(int num_slots)
 }
 
 void CellGrid::clear() {
+  ++layout_;
   for (Level& level : levels_) {
     level.side_m = level.per_side = 1.0F;
     level.num_nodes = 0;
@@ -58,13 +59,13 @@ std::uint16_t CellGrid::take_cell() {
 
 // Reach: what its cell and the finer grid's cell have in common. Returns the coordinates of its
 // cell.
-std::array<int, 3> CellGrid::set_reach(Place& place) const {
+std::array<int, 3> CellGrid::set_reach(Place& place, const Eigen::Vector3f& position_m) const {
   const Level& own = levels_[place.level];
   const Level& finer = levels_[0].side_m < levels_[1].side_m ? levels_[0] : levels_[1];
   std::array<int, 3> cell{};
   for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = floor_to_int(place.position_m[axis] * own.per_side);
-    const int part = floor_to_int(place.position_m[axis] * finer.per_side);
+    cell[axis] = floor_to_int(position_m[axis] * own.per_side);
+    const int part = floor_to_int(position_m[axis] * finer.per_side);
     const auto low = [](const Level& level, int c) { return static_cast<float>(c) * level.side_m; };
     const float low_m = std::max(low(own, cell[axis]), low(finer, part));
     const float high_m = std::min(low(own, cell[axis] + 1), low(finer, part + 1));
@@ -75,10 +76,11 @@ std::array<int, 3> CellGrid::set_reach(Place& place) const {
 }
 
 // Into the cell that follows from the node's position and level.
-void CellGrid::put(int slot) {
+void CellGrid::put(int slot, const Eigen::Vector3f& position_m) {
   Place& place = places_[slot];
   Level& level = levels_[place.level];
-  const std::array<int, 3> c = set_reach(place);
+  const std::array<int, 3> c = set_reach(place, position_m);
+  ++layout_;
   place.entry = level.entry(c[0], c[1], c[2]);
   std::uint16_t& start = level.table[place.entry];
   start &= kIndex;
@@ -88,9 +90,9 @@ void CellGrid::put(int slot) {
   Cell& cell = cells_[*link];
   int lane = 0;
   while ((cell.used >> lane & 1) != 0) ++lane;
-  cell.x_m[lane] = place.position_m[0];
-  cell.y_m[lane] = place.position_m[1];
-  cell.z_m[lane] = place.position_m[2];
+  cell.x_m[lane] = position_m.x();
+  cell.y_m[lane] = position_m.y();
+  cell.z_m[lane] = position_m.z();
   cell.slot[lane] = static_cast<std::uint16_t>(slot);
   cell.used = static_cast<std::uint16_t>(cell.used | 1 << lane);
   place.cell = *link;
@@ -107,6 +109,7 @@ void CellGrid::take_out(int slot) {
   Place& place = places_[slot];
   Level& level = levels_[place.level];
   Cell& cell = cells_[place.cell];
+  ++layout_;
   clear_lane(cell, place.lane);
   if (cell.used == 0) release_cell(level, place.entry, place.cell);
   place.cell = 0;
@@ -126,8 +129,7 @@ void CellGrid::release_cell(Level& level, std::uint32_t entry, std::uint16_t ind
 
 void CellGrid::add(int slot, int level, const Eigen::Vector3f& position_m) {
   places_[slot].level = level;
-  places_[slot].position_m = {position_m.x(), position_m.y(), position_m.z(), 0.0F};
-  put(slot);
+  put(slot, position_m);
 }
 
 void CellGrid::remove(int slot) {
@@ -136,17 +138,16 @@ void CellGrid::remove(int slot) {
 
 bool CellGrid::move(int slot, const Eigen::Vector3f& position_m) {
   Place& place = places_[slot];
-  place.position_m = {position_m.x(), position_m.y(), position_m.z(), 0.0F};
   bool in_reach = true;
   for (int axis = 0; axis < 3; ++axis) {
     const float off_m = std::abs(position_m[axis] - place.center_m[axis]);
     in_reach = in_reach && off_m <= place.reach_m[axis];
   }
   if (!in_reach) {
-    const std::array<int, 3> c = set_reach(place);
+    const std::array<int, 3> c = set_reach(place, position_m);
     if (place.entry != levels_[place.level].entry(c[0], c[1], c[2])) {
       take_out(slot);
-      put(slot);
+      put(slot, position_m);
       return true;
     }
   }
@@ -161,9 +162,13 @@ void CellGrid::resize(int level, float side_m) {
   levels_[level].side_m = side_m;
   levels_[level].per_side = 1.0F / side_m;
   for (int slot = 0; slot < static_cast<int>(places_.size()); ++slot) {
-    if (places_[slot].cell == 0) continue;
+    const Place& place = places_[slot];
+    if (place.cell == 0) continue;
+    const Cell& cell = cells_[place.cell];
+    const Eigen::Vector3f position_m(cell.x_m[place.lane], cell.y_m[place.lane],
+                                     cell.z_m[place.lane]);
     take_out(slot);
-    put(slot);
+    put(slot, position_m);
   }
 }
 

@@ -31,8 +31,7 @@ class CellGrid {
   /// Where a node is. Nobody need be told while it stays within reach of a centre on every axis:
   /// then it is still in its cell, and in the same cell of the finer grid. The fourth elements are
   /// 0.
-  struct alignas(64) Place {
-    std::array<float, 4> position_m{};
+  struct alignas(16) Place {
     std::array<float, 4> center_m{};
     std::array<float, 4> reach_m{};
     std::uint16_t cell = 0;
@@ -86,9 +85,13 @@ class CellGrid {
   /// Cells of this side from now on.
   void resize(int level, float side_m);
 
+  /// Changes whenever a node comes into another cell.
+  std::uint32_t layout() const { return layout_; }
+
   const Level& level(int index) const { return levels_[index]; }
   const Cell* cells() const { return cells_.data(); }
   const Place& place(int slot) const { return places_[slot]; }
+  const Place* places() const { return places_.data(); }
 
   // For the signal step, which moves nodes itself as long as they stay in their cells.
   Cell* cells() { return cells_.data(); }
@@ -101,14 +104,15 @@ class CellGrid {
   }
 
  private:
-  std::array<int, 3> set_reach(Place& place) const;
-  void put(int slot);
+  std::array<int, 3> set_reach(Place& place, const Eigen::Vector3f& position_m) const;
+  void put(int slot, const Eigen::Vector3f& position_m);
   void take_out(int slot);
   void mark_whether_it_goes_on(std::uint16_t& start) const;
   std::uint16_t take_cell();
   void clear_lane(Cell& cell, int lane);
   void release_cell(Level& level, std::uint32_t entry, std::uint16_t index);
 
+  std::uint32_t layout_ = 0;
   int table_bits_ = kMinTableBits;
   std::array<Level, kNumLevels> levels_;
   std::vector<Cell> cells_;  // of both grids; cells_[0] stays empty

@@ -86,9 +86,8 @@ void DynamicDensityGng::learn(std::span<const Signal> signals, int max_plane_nod
     end = std::min({num_signals, begin + static_cast<int>(winners.size()),
                     (begin / utility_interval + 1) * utility_interval,
                     (begin / insertion_interval + 1) * insertion_interval});
-    const std::span<const Signal> run = signals.subspan(begin, end - begin);
-    growing_.signals(run, winners.data());
-    moments_.add(run, winners.data());
+    growing_.signals(signals.subspan(begin), end - begin, winners.data());
+    moments_.add(signals.subspan(begin, end - begin), winners.data());
     if (end % utility_interval == 0) growing_.remove_useless();
     if (end % insertion_interval == 0) insertion_round(end / insertion_interval, max_plane_nodes);
   }

@@ -12,9 +12,7 @@ Graph::Graph(int max_nodes, int max_degree) : max_nodes_(max_nodes), max_degree_
   CHECK(max_nodes >= 2 && max_nodes <= kNodeLimit, "max_nodes out of range");
   CHECK(max_degree >= 2 && max_degree <= kDegreeLimit, "max_degree out of range");
   const int padded = (max_nodes + kSlotBlock - 1) / kSlotBlock * kSlotBlock;
-  x_m_.resize(padded);
-  y_m_.resize(padded);
-  z_m_.resize(padded);
+  positions_.resize(padded);
   id_.resize(padded);
   wins_.resize(padded);
   links_.resize(padded);
@@ -23,9 +21,7 @@ Graph::Graph(int max_nodes, int max_degree) : max_nodes_(max_nodes), max_degree_
 }
 
 void Graph::clear() {
-  std::fill(x_m_.begin(), x_m_.end(), kFar_m);
-  std::fill(y_m_.begin(), y_m_.end(), kFar_m);
-  std::fill(z_m_.begin(), z_m_.end(), kFar_m);
+  std::fill(positions_.begin(), positions_.end(), Position{});
   std::fill(id_.begin(), id_.end(), -1);
   std::fill(wins_.begin(), wins_.end(), std::uint16_t{0});
   std::fill(links_.begin(), links_.end(), Links{});
@@ -43,18 +39,17 @@ void Graph::renumber() {
 }
 
 void Graph::move_towards(int slot, const Eigen::Vector3f& target_m, float rate) {
-  x_m_[slot] += rate * (target_m.x() - x_m_[slot]);
-  y_m_[slot] += rate * (target_m.y() - y_m_[slot]);
-  z_m_[slot] += rate * (target_m.z() - z_m_[slot]);
+  Position& p = positions_[slot];
+  p.x_m += rate * (target_m.x() - p.x_m);
+  p.y_m += rate * (target_m.y() - p.y_m);
+  p.z_m += rate * (target_m.z() - p.z_m);
 }
 
 int Graph::add_node(const Eigen::Vector3f& position_m) {
   CHECK(num_nodes_ < max_nodes_, "add_node on a full graph");
   if (next_id_ == std::numeric_limits<int>::max()) renumber();
   const int slot = lowest_free_;
-  x_m_[slot] = position_m.x();
-  y_m_[slot] = position_m.y();
-  z_m_[slot] = position_m.z();
+  positions_[slot] = {position_m.x(), position_m.y(), position_m.z(), 0.0F};
   id_[slot] = next_id_++;
   ++num_nodes_;
   num_slots_ = std::max(num_slots_, slot + 1);
@@ -65,7 +60,7 @@ int Graph::add_node(const Eigen::Vector3f& position_m) {
 void Graph::remove_node(int slot) {
   CHECK(alive(slot), "remove_node on an empty slot");
   while (degree(slot) > 0) separate(slot, links_[slot].neighbour[0]);
-  x_m_[slot] = y_m_[slot] = z_m_[slot] = kFar_m;
+  positions_[slot] = {};
   id_[slot] = -1;
   --num_nodes_;
   lowest_free_ = std::min(lowest_free_, slot);

@@ -32,7 +32,7 @@ class Graph {
   /// Every living slot is below this.
   int num_slots() const { return num_slots_; }
   /// Length of arrays over slots.
-  int padded_slots() const { return static_cast<int>(x_m_.size()); }
+  int padded_slots() const { return static_cast<int>(positions_.size()); }
 
   bool alive(int slot) const { return id_[slot] >= 0; }
   /// Unique among all nodes since clear() or renumber(), ascending with creation; -1 = empty slot.
@@ -42,11 +42,17 @@ class Graph {
   /// Gives the living nodes the ids 0, 1, ... in their present order.
   void renumber();
 
-  Eigen::Vector3f position_m(int slot) const { return {x_m_[slot], y_m_[slot], z_m_[slot]}; }
+  /// To be read as one vector of four.
+  struct alignas(16) Position {
+    float x_m = kFar_m, y_m = kFar_m, z_m = kFar_m;
+    float zero = 0.0F;
+  };
+  Eigen::Vector3f position_m(int slot) const {
+    const Position& p = positions_[slot];
+    return {p.x_m, p.y_m, p.z_m};
+  }
   void move_towards(int slot, const Eigen::Vector3f& target_m, float rate);
-  const float* x_m() const { return x_m_.data(); }
-  const float* y_m() const { return y_m_.data(); }
-  const float* z_m() const { return z_m_.data(); }
+  const Position* positions() const { return positions_.data(); }
 
   /// Puts a node without edges into the lowest free slot and returns it. Needs num_nodes <
   /// max_nodes.
@@ -86,12 +92,9 @@ class Graph {
 
   // For the signal step (growing_signals.cpp), which does the frequent part itself.
   Links& links(int slot) { return links_[slot]; }
+  const Links& links(int slot) const { return links_[slot]; }
   std::uint16_t* wins() { return wins_.data(); }
-  void set_position(int slot, float x_m, float y_m, float z_m) {
-    x_m_[slot] = x_m;
-    y_m_[slot] = y_m;
-    z_m_[slot] = z_m;
-  }
+  Position* positions() { return positions_.data(); }
 
  private:
   int find(int a, int b) const;
@@ -105,7 +108,7 @@ class Graph {
   int num_slots_ = 0;
   int lowest_free_ = 0;
   int next_id_ = 0;
-  std::vector<float> x_m_, y_m_, z_m_;
+  std::vector<Position> positions_;
   std::vector<int> id_;
   std::vector<std::uint16_t> wins_;
   std::vector<Links> links_;

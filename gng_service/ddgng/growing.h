@@ -26,10 +26,13 @@ class Growing {
   void start(const Eigen::Vector3f& h1_m, const Eigen::Vector3f& h2_m);
   bool started() const { return graph().num_nodes() >= 2; }
 
-  /// Signals one after the other, each: winners, edge, error and utility, move, ageing, decay.
-  /// Writes the winners of each; they may have been removed since. Needs started().
-  /// growing_signals.cpp
-  void signals(std::span<const Signal> signals, Winners* winners);
+  /// The first num signals one after the other, each: winners, edge, error and utility, move,
+  /// ageing, decay. Writes the winners of each; they may have been removed since. The rest is what
+  /// comes next: its first winners are looked for already. Needs started(). growing_signals.cpp
+  void signals(std::span<const Signal> signals, std::size_t num, Winners* winners);
+  void signals(std::span<const Signal> all, Winners* winners) {
+    signals(all, all.size(), winners);
+  }
 
   enum class Weighting { kError, kErrorAndStrength };
   /// A node half way between the node of the largest (weighted) error and its worst neighbour.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/check.h"
 #include "ddgng/growing.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -33,65 +34,96 @@ HWY_INLINE int IndexOf(const Graph::Links& links, int neighbour) {
   return index;
 }
 
-/// The search for the next signal runs ahead of the changes that this one makes, so that the two
-/// overlap in the processor. It still stands when it found none of the moved nodes and none of them
-/// has come as near as what it found.
-struct Ahead {
-  HWY_ALIGN float signal_m[4];
-  float radius_m = -1.0F;  ///< a little more than to its second winner; negative = no search
-  bool disturbed = false;
-};
-
-HWY_INLINE void SearchAhead(GrowingState& state, const Signal& signal, Ahead& ahead,
-                            Winners& winners) {
-  constexpr float kMargin = 1.0001F;  // more than rounding
+HWY_INLINE void ListCellsOf(const GrowingState& state, const Signal& signal, Ahead& ahead) {
   // As a whole: a vector read from where single elements were just written would wait for them.
-  static_assert(offsetof(Signal, position_m) == 0 && sizeof(Signal) == 4 * sizeof(float));
+  static_assert(offsetof(Signal, position_m) == 0 && sizeof(Signal) == sizeof(Graph::Position));
   const hn::CappedTag<float, 4> d;
   for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
     const auto* const from = reinterpret_cast<const float*>(&signal) + i;
     const auto coordinates = hn::FirstN(d, static_cast<std::size_t>(std::max(0, 3 - i)));
-    hn::Store(hn::IfThenElseZero(coordinates, hn::LoadU(d, from)), d, ahead.signal_m + i);
+    hn::Store(hn::IfThenElseZero(coordinates, hn::LoadU(d, from)), d,
+              &ahead.query.signal_m.x_m + i);
   }
-  winners = NearestTwo(state.search, state.graph, ahead.signal_m);
-  ahead.radius_m = kMargin * std::sqrt(winners.second_m2);
-  ahead.disturbed = false;
+  ahead.found = false;
+  ListCells(state.search.grid(), ahead.query);
 }
 
-/// Moves a node a part of the way to a target (x, y, z, 0).
-HWY_INLINE void Move(GrowingState& state, int slot, const float* target_m, float rate,
-                     Ahead& ahead) {
-  if (HWY_UNLIKELY(state.search.linear_only())) {
-    state.graph.move_towards(slot, {target_m[0], target_m[1], target_m[2]}, rate);
-    ahead.disturbed = true;
-    return;
-  }
-  CellGrid& grid = state.search.grid();
-  CellGrid::Place& place = grid.places()[slot];
+HWY_INLINE void Find(GrowingState& state, Ahead& ahead) {
+  NearestTwo(state.search, state.graph, ahead.query);
+  ahead.found = true;
+  ahead.changes = state.search.changes();
+}
+
+/// How far the moved nodes were from the signal on each axis, and how far beyond their reach they
+/// are now: the largest values.
+struct Moves {
+  HWY_ALIGN float off_m[4] = {};
+  HWY_ALIGN float beyond_m[4] = {};
+};
+
+/// Moves the winner and its neighbours a part of the way to the signal.
+HWY_INLINE Moves MoveAll(GrowingState& state, const Graph::Links& links, const Query& query) {
+  const int s1 = query.winners.first;
+  CellGrid::Place* const places = state.search.grid().places();
+  CellGrid::Cell* const cells = state.search.grid().cells();
+  Graph::Position* const positions = state.graph.positions();
+  const int degree = links.degree;
   const hn::CappedTag<float, 4> d;
-  bool in_reach = true;
-  bool near_next = true;
+  Moves moves;
+  for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {  // once, but for scalars
+    const auto target = hn::Load(d, &query.signal_m.x_m + i);
+    auto rate = hn::Set(d, state.params.winner_rate);
+    auto off = hn::Zero(d);
+    auto beyond = hn::Zero(d);
+    for (int k = 0, j = s1;; j = links.neighbour[k++]) {
+      float* const position = &positions[j].x_m + i;
+      const CellGrid::Place& place = places[j];
+      const auto old = hn::Load(d, position);
+      const auto way = hn::Sub(target, old);
+      const auto moved = hn::Add(old, hn::Mul(rate, way));
+      hn::Store(moved, d, position);
+      off = hn::Max(off, hn::Abs(way));
+      const auto from_center = hn::Abs(hn::Sub(moved, hn::Load(d, place.center_m.data() + i)));
+      beyond = hn::Max(beyond, hn::Sub(from_center, hn::Load(d, place.reach_m.data() + i)));
+      const auto [x_m, y_m, z_m, zero] = positions[j];
+      CellGrid::Cell& cell = cells[place.cell];
+      cell.x_m[place.lane] = x_m;
+      cell.y_m[place.lane] = y_m;
+      cell.z_m[place.lane] = z_m;
+      if (k == degree) break;
+      rate = hn::Set(d, state.params.neighbour_rate);
+    }
+    hn::Store(off, d, moves.off_m + i);
+    hn::Store(beyond, d, moves.beyond_m + i);
+  }
+  return moves;
+}
+
+/// Whether a node that has moved may be, or have been, one of the two winners that the search for
+/// the next signal found before. Two boxes: round this signal, the moved nodes; round the next, all
+/// that is no farther than its second winner.
+HWY_INLINE bool MayDisturb(const Query& query, const Moves& moves, const Query& next) {
+  constexpr float kMargin = 1.0001F;  // more than rounding
+  const float radius_m = std::sqrt(next.winners.second_m2);
+  const hn::CappedTag<float, 4> d;
+  bool overlap = true;
   for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
-    const auto old = hn::Load(d, place.position_m.data() + i);
-    const auto way = hn::Sub(hn::Load(d, target_m + i), old);
-    const auto moved = hn::Add(old, hn::Mul(hn::Set(d, rate), way));
-    hn::Store(moved, d, place.position_m.data() + i);
-    const auto off = hn::Abs(hn::Sub(moved, hn::Load(d, place.center_m.data() + i)));
-    in_reach = in_reach && hn::AllTrue(d, hn::Le(off, hn::Load(d, place.reach_m.data() + i)));
-    const auto to_next = hn::Abs(hn::Sub(moved, hn::Load(d, ahead.signal_m + i)));
-    near_next = near_next && hn::AllTrue(d, hn::Le(to_next, hn::Set(d, ahead.radius_m)));
+    const auto apart = hn::Abs(
+        hn::Sub(hn::Load(d, &next.signal_m.x_m + i), hn::Load(d, &query.signal_m.x_m + i)));
+    const auto sum = hn::Add(hn::Load(d, moves.off_m + i), hn::Set(d, radius_m));
+    overlap = overlap && hn::AllTrue(d, hn::Le(apart, hn::Mul(sum, hn::Set(d, kMargin))));
   }
-  ahead.disturbed |= near_next;
-  const auto [x_m, y_m, z_m, zero] = place.position_m;
-  state.graph.set_position(slot, x_m, y_m, z_m);
-  if (HWY_UNLIKELY(!in_reach)) {
-    state.search.move(slot, {x_m, y_m, z_m});
-    return;
-  }
-  CellGrid::Cell& cell = grid.cells()[place.cell];
-  cell.x_m[place.lane] = x_m;
-  cell.y_m[place.lane] = y_m;
-  cell.z_m[place.lane] = z_m;
+  return overlap;
+}
+
+HWY_INLINE bool IsBeyond(const float* beyond_m) {
+  return std::max(std::max(beyond_m[0], beyond_m[1]), beyond_m[2]) > 0.0F;
+}
+
+/// Tells the search of those that may have left their cells.
+inline HWY_NOINLINE void TellMoves(GrowingState& state, int s1) {
+  state.search.move(s1, state.graph.position_m(s1));
+  for (const int j : state.graph.neighbours(s1)) state.search.move(j, state.graph.position_m(j));
 }
 
 /// The edge of the two winners: made, or made young again.
@@ -109,16 +141,17 @@ HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
 }
 
 /// Asks for the memory that a signal with these winners will change, while the next search runs.
-HWY_INLINE void PrefetchNeighbours(GrowingState& state, int s1) {
+HWY_INLINE void PrefetchNeighbours(const GrowingState& state, int s1) {
   const Graph::Links& links = state.graph.links(s1);
   HWY_UNROLL(8)
   for (int k = 0; k < 8; ++k) {  // more are rare; beyond the degree it is some place or none
     const int j = links.neighbour[k] & Graph::kNodeLimit;
     hwy::Prefetch(state.search.grid().places() + j);
+    hwy::Prefetch(state.graph.positions() + j);
   }
 }
 
-HWY_INLINE void PrefetchLinks(GrowingState& state, const Winners& winners) {
+HWY_INLINE void PrefetchLinks(const GrowingState& state, const Winners& winners) {
   for (const int slot : {winners.first, winners.second}) {
     hwy::Prefetch(state.graph.links(slot).neighbour.data());
     hwy::Prefetch(state.graph.links(slot).born.data());
@@ -126,10 +159,8 @@ HWY_INLINE void PrefetchLinks(GrowingState& state, const Winners& winners) {
   hwy::Prefetch(state.search.grid().places() + winners.first);
 }
 
-/// What a signal does once its winners are known.
-HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners& winners,
-                      const Winners& next_winners, Ahead& ahead) {
-  const GrowingParams& params = state.params;
+/// What a signal does to the graph but for the moves. Returns the age of its oldest edge.
+HWY_INLINE int Learn(GrowingState& state, const Winners& winners) {
   const int s1 = winners.first;
   // The new edge is made after the others aged, so it starts at 0 and cannot be too old below.
   state.graph.age_edges(s1);
@@ -137,50 +168,81 @@ HWY_INLINE void Learn(GrowingState& state, const float* signal_m, const Winners&
   state.error[s1] += state.error_decay.stored(winners.first_m2);
   state.utility[s1] += state.decay_of(s1).stored(winners.second_m2 - winners.first_m2);
   state.extremes.touch_risen(s1, state.error[s1]);
+  state.error_decay.next_signal();
+  for (Decay& decay : state.utility_decay) decay.next_signal();
 
   const Graph::Links& links = state.graph.links(s1);
   const std::uint16_t* const wins = state.graph.wins();
-  ahead.disturbed |= s1 == next_winners.first || s1 == next_winners.second ||
-                     IndexOf(links, next_winners.first) >= 0 ||
-                     IndexOf(links, next_winners.second) >= 0;
-  Move(state, s1, signal_m, params.winner_rate, ahead);
   int oldest = 0;
   for (int k = 0; k < links.degree; ++k) {
-    const int j = links.neighbour[k];
-    Move(state, j, signal_m, params.neighbour_rate, ahead);
-    const auto age = static_cast<std::uint16_t>(wins[s1] + wins[j] - links.born[k]);
+    const auto age = static_cast<std::uint16_t>(wins[s1] + wins[links.neighbour[k]] - links.born[k]);
     oldest = std::max(oldest, static_cast<int>(age));
   }
-  if (HWY_UNLIKELY(oldest > params.max_edge_age)) {
-    state.remove_old_edges(s1);
-    ahead.disturbed = true;
-  }
-
-  bool shrink_due = false;
-  for (Decay* decay : {&state.error_decay, &state.utility_decay[0], &state.utility_decay[1]}) {
-    decay->next_signal();
-    shrink_due = shrink_due || decay->shrink_due();
-  }
-  if (HWY_UNLIKELY(shrink_due)) state.shrink();
+  return oldest;
 }
 
-void Signals(GrowingState& state, std::span<const Signal> signals, Winners* winners) {
-  const std::size_t last = signals.size() - 1;
-  Ahead searches[2];  // of this signal and of the next, in turns: copies would cost time
-  SearchAhead(state, signals[0], searches[0], winners[0]);
-  for (std::size_t i = 0; i <= last; ++i) {
-    Ahead& now = searches[i % 2];
-    Ahead& next = searches[(i + 1) % 2];
-    const std::size_t next_i = std::min(i + 1, last);
-    PrefetchNeighbours(state, winners[i].first);
-    if (i < last) SearchAhead(state, signals[next_i], next, winners[next_i]);
-    PrefetchLinks(state, winners[next_i]);
-    Learn(state, now.signal_m, winners[i], winners[next_i], next);
-    if (HWY_UNLIKELY(next.disturbed) && i < last) {
-      SearchAhead(state, signals[next_i], next, winners[next_i]);
-    }
+/// One signal; the search for the next has run already and is repeated where this one disturbs it.
+HWY_INLINE void LearnAndMove(GrowingState& state, const Query& query, Ahead& next) {
+  const int s1 = query.winners.first;
+  const int oldest = Learn(state, query.winners);
+  const Moves moves = MoveAll(state, state.graph.links(s1), query);
+  if (HWY_UNLIKELY(IsBeyond(moves.beyond_m))) TellMoves(state, s1);
+  if (HWY_UNLIKELY(oldest > state.params.max_edge_age)) state.remove_old_edges(s1);
+  if (!next.found) return;
+  if (HWY_UNLIKELY(MayDisturb(query, moves, next.query)) ||
+      HWY_UNLIKELY(next.changes != state.search.changes())) {
+    Find(state, next);
   }
-  state.counts.signals += static_cast<std::int64_t>(signals.size());
+}
+
+void Signals(GrowingState& state, std::span<const Signal> signals, std::size_t num,
+             Winners* winners) {
+  const auto ahead = [&](std::size_t i) -> Ahead& {
+    return state.ahead[(state.turn + i) % state.ahead.size()];
+  };
+  Ahead& first = ahead(0);
+  const bool is_found = first.found && first.changes == state.search.changes() &&
+                        first.is_of(signals[0].position_m);
+  if (!is_found) {
+    ListCellsOf(state, signals[0], first);
+    Find(state, first);
+  }
+  if (signals.size() > 1) ListCellsOf(state, signals[1], ahead(1));
+  for (std::size_t i = 0; i < num; ++i) {
+    Ahead& now = ahead(i);
+    Ahead& next = ahead(i + 1);
+    next.found = false;
+    PrefetchNeighbours(state, now.query.winners.first);
+    if (i + 2 < signals.size()) ListCellsOf(state, signals[i + 2], ahead(i + 2));
+    if (i + 1 < signals.size()) {
+      Find(state, next);
+      PrefetchLinks(state, next.query.winners);
+    }
+    LearnAndMove(state, now.query, next);
+    winners[i] = now.query.winners;
+    now.found = false;
+    if (state.error_decay.shrink_due() || state.utility_decay[0].shrink_due() || state.utility_decay[1].shrink_due()) state.shrink();
+  }
+  state.turn += static_cast<std::uint32_t>(num);
+  state.counts.signals += static_cast<std::int64_t>(num);
+}
+
+/// The same without cells.
+void SignalsLinearly(GrowingState& state, std::span<const Signal> signals, std::size_t num,
+                     Winners* winners) {
+  for (std::size_t i = 0; i < num; ++i) {
+    const Eigen::Vector3f& signal_m = signals[i].position_m;
+    winners[i] = nearest_two_linear(state.graph, signal_m);
+    const int s1 = winners[i].first;
+    const int oldest = Learn(state, winners[i]);
+    state.graph.move_towards(s1, signal_m, state.params.winner_rate);
+    for (const int j : state.graph.neighbours(s1)) {
+      state.graph.move_towards(j, signal_m, state.params.neighbour_rate);
+    }
+    if (HWY_UNLIKELY(oldest > state.params.max_edge_age)) state.remove_old_edges(s1);
+    if (state.error_decay.shrink_due() || state.utility_decay[0].shrink_due() || state.utility_decay[1].shrink_due()) state.shrink();
+  }
+  state.counts.signals += static_cast<std::int64_t>(num);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -191,12 +253,17 @@ HWY_AFTER_NAMESPACE();
 namespace ddgng {
 
 HWY_EXPORT(Signals);
+HWY_EXPORT(SignalsLinearly);
 
-void Growing::signals(std::span<const Signal> signals, Winners* winners) {
-  if (signals.empty()) return;
-  HWY_DYNAMIC_DISPATCH(Signals)(state_, signals, winners);
-  state_.search.learn_spacing(graph(), winners[signals.size() - 1],
-                              static_cast<int>(signals.size()));
+void Growing::signals(std::span<const Signal> signals, std::size_t num, Winners* winners) {
+  if (num == 0) return;
+  CHECK(num <= signals.size(), "more signals than given");
+  if (state_.search.linear_only()) {
+    HWY_DYNAMIC_DISPATCH(SignalsLinearly)(state_, signals, num, winners);
+    return;
+  }
+  HWY_DYNAMIC_DISPATCH(Signals)(state_, signals, num, winners);
+  state_.search.learn_spacing(graph(), winners[num - 1]);
 }
 
 }  // namespace ddgng

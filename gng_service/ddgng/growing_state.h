@@ -3,6 +3,7 @@
 // them. The steps of the algorithm are in growing.cpp and growing_signals.cpp.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,19 @@
 #include "ddgng/winner_search.h"
 
 namespace ddgng {
+
+/// A signal to come: the search for it runs ahead of the changes that the signals before it make, so
+/// that the processor overlaps the two, and is repeated where these touch its answer.
+struct Ahead {
+  Query query;
+  bool found = false;         ///< query.winners stand
+  std::uint32_t changes = 0;  ///< WinnerSearch::changes() when they were found
+
+  bool is_of(const Eigen::Vector3f& signal_m) const {
+    const auto& [x_m, y_m, z_m, zero] = query.signal_m;
+    return signal_m == Eigen::Vector3f(x_m, y_m, z_m);
+  }
+};
 
 struct GrowingState {
   explicit GrowingState(const GrowingParams& growing_params);
@@ -41,6 +55,8 @@ struct GrowingState {
   std::vector<float> error, utility;
   std::vector<std::uint8_t> inside;
   Extremes extremes;
+  std::array<Ahead, 4> ahead;  ///< in turns: of this signal, of the next, ...
+  std::uint32_t turn = 0;      ///< of the signal that comes
   Decay error_decay;
   Decay utility_decay[2];  ///< outside, inside
   int num_inside = 0;

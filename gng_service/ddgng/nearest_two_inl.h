@@ -21,38 +21,19 @@ namespace ddgng {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr int kBlockCells = 8;
 constexpr float kBorderSlack = CellGrid::kSlack + Occupancy::kSlack;  // of a side
 
-/// The 2 x 2 x 2 cells of one level round the cell corner that is nearest to a signal.
-struct Block {
-  const CellGrid::Level* level;
-  int cx, cy, cz;       ///< the first of them
-  std::uint32_t entry;  ///< of the first
-  float border_m2;      ///< no other node of the level is nearer than this, squared
-
-  std::uint16_t cell(std::uint32_t i) const {
-    const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level->kPerY + (i >> 2) * level->kPerZ;
-    return level->table[(entry + off) & level->mask];
-  }
-  /// 0 = all cells are empty; with CellGrid::kGoesOn, a cell has more nodes than lanes.
-  int any() const {
-    int any = 0;
-    HWY_UNROLL(8)
-    for (std::uint32_t i = 0; i < kBlockCells; ++i) any |= cell(i);
-    return any;
-  }
-};
-
-/// signal_m: x, y, z, 0, aligned. A signal beyond the reach of exact cells proves nothing.
-HWY_INLINE Block BlockAround(const CellGrid::Level& level, const float* signal_m) {
+/// Lists the cells that hold nodes among the 2 x 2 x 2 of one level round the cell corner that is
+/// nearest to the signal. A signal beyond the reach of exact cells proves nothing (border 0).
+HWY_INLINE void ListBlock(const CellGrid& grid, int index, Query& query) {
+  const CellGrid::Level& level = grid.level(index);
   const hn::CappedTag<float, 4> d;
   const hn::RebindToSigned<decltype(d)> di;
   HWY_ALIGN std::int32_t corner[4];
   HWY_ALIGN float border[4];
   bool addressable = true;
   for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
-    const auto f = hn::Mul(hn::Load(d, signal_m + i), hn::Set(d, level.per_side));
+    const auto f = hn::Mul(hn::Load(d, &query.signal_m.x_m + i), hn::Set(d, level.per_side));
     const auto low = hn::Floor(hn::Sub(f, hn::Set(d, 0.5F)));
     const auto u = hn::Sub(f, low);
     hn::Store(hn::ConvertTo(di, low), di, corner + i);
@@ -62,55 +43,82 @@ HWY_INLINE Block BlockAround(const CellGrid::Level& level, const float* signal_m
   }
   const float inner = std::min(std::min(border[0], border[1]), border[2]) - kBorderSlack;
   const float border_m = addressable ? std::max(0.0F, inner) * level.side_m : 0.0F;
-  return {&level,
-          corner[0],
-          corner[1],
-          corner[2],
-          level.entry(corner[0], corner[1], corner[2]),
-          border_m * border_m};
+  query.border_m2 = border_m * border_m;
+  query.level = index;
+  query.corner = {corner[0], corner[1], corner[2]};
+
+  const std::uint32_t entry = level.entry(corner[0], corner[1], corner[2]);
+  const std::uint16_t* const table = level.table.data();
+  int any = 0;
+  int num = 0;
+  query.cells = {};
+  HWY_UNROLL(8)
+  for (std::uint32_t i = 0; i < Query::kBlockCells; ++i) {  // without branches: empty ones overwrite
+    const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level.kPerY + (i >> 2) * level.kPerZ;
+    const std::uint16_t first = table[(entry + off) & level.mask];
+    query.cells[num] = first;
+    num += first != 0 ? 1 : 0;
+    any |= first;
+  }
+  query.num_cells = num;
+  query.crowded = (any & CellGrid::kGoesOn) != 0;
+  query.layout = grid.layout();
 }
 
-/// The lanes of all cells of a block that hold a value, a bit each; true: exactly one.
-struct Marks {
-  std::uint64_t low = 0, high = 0;
+/// From the inside's cells where these hold any node, else from the outside's.
+HWY_INLINE void ListCells(const CellGrid& grid, Query& query) {
+  query.num_cells = 0;
+  if (grid.level(1).num_nodes > 0) ListBlock(grid, 1, query);
+  if (query.num_cells == 0) ListBlock(grid, 0, query);
+}
 
-  int first() const {
-    return low != 0 ? static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(low))
-                    : 64 + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(high));
-  }
+/// The lanes of the listed cells that hold a value, a bit each.
+template <int kNumCells>
+struct Marks {
+  static constexpr int kNumWords = (kNumCells * CellGrid::kLanes + 63) / 64;
+  std::uint64_t words[kNumWords] = {};
+
   bool single() const {
-    return (low == 0) != (high == 0) && ((low & (low - 1)) | (high & (high - 1))) == 0;
+    std::size_t num = 0;
+    for (const std::uint64_t word : words) num += hwy::PopCount(word);
+    return num == 1;
+  }
+  /// Needs single().
+  int lane() const {
+    const int word = words[0] == 0 ? kNumWords - 1 : 0;
+    return 64 * word + static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(words[word]));
   }
 };
 
-template <class D>
-HWY_INLINE Marks LanesOf(D d, const float* m2, hn::Vec<D> value) {
+template <int kNumCells, class D>
+HWY_INLINE Marks<kNumCells> LanesOf(D d, const float* m2, hn::Vec<D> value) {
   const int num_lanes = static_cast<int>(hn::Lanes(d));
-  Marks marks;
+  Marks<kNumCells> marks;
   HWY_UNROLL(32)
-  for (int i = 0; i < kBlockCells * CellGrid::kLanes; i += num_lanes) {
+  for (int i = 0; i < kNumCells * CellGrid::kLanes; i += num_lanes) {
     std::uint16_t bits = 0;  // at most 16 lanes; little-endian, as all of our machines
     hn::StoreMaskBits(d, hn::Eq(hn::Load(d, m2 + i), value),
                       reinterpret_cast<std::uint8_t*>(&bits));
-    (i < 64 ? marks.low : marks.high) |= static_cast<std::uint64_t>(bits) << (i % 64);
+    marks.words[i / 64] |= static_cast<std::uint64_t>(bits) << (i % 64);
   }
   return marks;
 }
 
-/// The nearest two nodes of a block of which no cell goes on. False: distances are equal.
-HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& block,
-                                  const float* signal_m, Winners& winners) {
+/// The nearest two nodes of the first cells listed (those unused are empty). False: distances are
+/// equal.
+template <int kNumCells>
+HWY_INLINE bool NearestTwoOfCells(const CellGrid::Cell* cells, Query& query) {
   const hn::CappedTag<float, CellGrid::kLanes> d;
   const int num_lanes = static_cast<int>(hn::Lanes(d));
-  const auto x = hn::Set(d, signal_m[0]);
-  const auto y = hn::Set(d, signal_m[1]);
-  const auto z = hn::Set(d, signal_m[2]);
-  HWY_ALIGN float m2[kBlockCells * CellGrid::kLanes];
+  const auto x = hn::Set(d, query.signal_m.x_m);
+  const auto y = hn::Set(d, query.signal_m.y_m);
+  const auto z = hn::Set(d, query.signal_m.z_m);
+  HWY_ALIGN float m2[kNumCells * CellGrid::kLanes];
   auto best = hn::Set(d, hwy::HighestValue<float>());
   auto next = best;
   HWY_UNROLL(8)
-  for (std::uint32_t c = 0; c < kBlockCells; ++c) {
-    const CellGrid::Cell& cell = cells[block.cell(c)];
+  for (int c = 0; c < kNumCells; ++c) {
+    const CellGrid::Cell& cell = cells[query.cells[c]];
     HWY_UNROLL(4)
     for (int i = 0; i < CellGrid::kLanes; i += num_lanes) {
       const auto dx = hn::Sub(hn::Load(d, cell.x_m.data() + i), x);
@@ -124,46 +132,57 @@ HWY_INLINE bool NearestTwoOfBlock(const CellGrid::Cell* cells, const Block& bloc
   }
   const auto first = hn::MinOfLanes(d, best);
   const auto second = hn::MinOfLanes(d, hn::IfThenElse(hn::Eq(best, first), next, best));
+  Winners& winners = query.winners;
   winners.first_m2 = hn::GetLane(first);
   winners.second_m2 = hn::GetLane(second);
-  const Marks has_first = LanesOf(d, m2, first);
-  const Marks has_second = LanesOf(d, m2, second);
+  const auto has_first = LanesOf<kNumCells>(d, m2, first);
+  const auto has_second = LanesOf<kNumCells>(d, m2, second);
   if (HWY_UNLIKELY(!has_first.single() || !has_second.single())) return false;
   const auto slot_at = [&](int lane) {
-    return cells[block.cell(lane / CellGrid::kLanes)].slot[lane % CellGrid::kLanes];
+    return cells[query.cells[lane / CellGrid::kLanes]].slot[lane % CellGrid::kLanes];
   };
-  winners.first = slot_at(has_first.first());
-  winners.second = slot_at(has_second.first());
+  winners.first = slot_at(has_first.lane());
+  winners.second = slot_at(has_second.lane());
   return true;
 }
 
-/// signal_m: x, y, z, 0, aligned.
-HWY_INLINE Winners NearestTwo(WinnerSearch& search, const Graph& graph, const float* signal_m) {
-  search.count();
-  Winners winners;
-  winners.second_m2 = hwy::HighestValue<float>();
-  const Eigen::Vector3f point_m(signal_m[0], signal_m[1], signal_m[2]);
-  if (HWY_LIKELY(!search.linear_only())) {
-    const CellGrid& grid = search.grid();
-    int level = grid.level(1).num_nodes > 0 ? 1 : 0;
-    Block block = BlockAround(grid.level(level), signal_m);
-    int any = block.any();
-    if (level == 1 && any == 0) {
-      level = 0;
-      block = BlockAround(grid.level(0), signal_m);
-      any = block.any();
-    }
-    if (HWY_UNLIKELY((any & CellGrid::kGoesOn) != 0) ||
-        HWY_UNLIKELY(!NearestTwoOfBlock(grid.cells(), block, signal_m, winners))) {
-      winners = search.nearest_two_crowded(level, {block.cx, block.cy, block.cz}, point_m);
-    }
-    if (HWY_LIKELY(winners.second_m2 < block.border_m2) &&
-        (HWY_LIKELY(!search.others_in_block(level, block.cx, block.cy, block.cz)) ||
-         !search.others_within(level, point_m, winners.second_m2))) {
-      return winners;
+HWY_INLINE bool NearestTwoOfCells(const CellGrid::Cell* cells, Query& query) {
+  if (query.num_cells <= 4) return NearestTwoOfCells<4>(cells, query);
+  return NearestTwoOfCells<Query::kBlockCells>(cells, query);
+}
+
+/// The answer when the listed cells could not prove theirs.
+inline HWY_NOINLINE void NearestTwoWide(WinnerSearch& search, const Graph& graph, Query& query) {
+  float second_m2 = query.winners.second_m2;
+  if (query.level == 1) {  // near the border of the inside, nodes outside are often nearer
+    Query outside = query;
+    ListBlock(search.grid(), 0, outside);
+    if (!outside.crowded && NearestTwoOfCells(search.grid().cells(), outside)) {
+      second_m2 = std::min(second_m2, outside.winners.second_m2);
     }
   }
-  return search.nearest_two_wide(graph, point_m, winners.second_m2);
+  const auto [x_m, y_m, z_m, zero] = query.signal_m;
+  query.winners = search.nearest_two_wide(graph, {x_m, y_m, z_m}, second_m2);
+}
+
+/// Needs ListCells(); what has changed since is taken into account.
+HWY_INLINE void NearestTwo(WinnerSearch& search, const Graph& graph, Query& query) {
+  const CellGrid& grid = search.grid();
+  if (HWY_UNLIKELY(query.layout != grid.layout())) ListCells(grid, query);
+  search.count();
+  const auto [x_m, y_m, z_m, zero] = query.signal_m;
+  const Eigen::Vector3f point_m(x_m, y_m, z_m);
+  if (HWY_UNLIKELY(query.crowded) || HWY_UNLIKELY(!NearestTwoOfCells(grid.cells(), query))) {
+    query.winners = search.nearest_two_crowded(query.level, query.corner, point_m);
+  }
+  const float second_m2 = query.winners.second_m2;
+  const auto [cx, cy, cz] = query.corner;
+  if (HWY_LIKELY(second_m2 < query.border_m2) &&
+      (HWY_LIKELY(!search.others_in_block(query.level, cx, cy, cz)) ||
+       !search.others_within(query.level, point_m, second_m2))) {
+    return;
+  }
+  NearestTwoWide(search, graph, query);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -45,9 +45,10 @@ void Snapshot::take(const Growing& growing, const Moments& moments, Topology& to
     const int slot = slot_of_node_[node];
     node_of_slot_[slot] = node;
     topology.node_id.push_back(graph.id(slot));
-    topology.node_x_m.push_back(graph.x_m()[slot]);
-    topology.node_y_m.push_back(graph.y_m()[slot]);
-    topology.node_z_m.push_back(graph.z_m()[slot]);
+    const Eigen::Vector3f position_m = graph.position_m(slot);
+    topology.node_x_m.push_back(position_m.x());
+    topology.node_y_m.push_back(position_m.y());
+    topology.node_z_m.push_back(position_m.z());
     topology.node_strength.push_back(growing.strength(slot));
     topology.node_error_m2.push_back(growing.error_m2(slot));
     topology.node_utility_m2.push_back(growing.utility_m2(slot));

@@ -58,9 +58,14 @@ Winners NearestTwoOfAll(const Graph& graph, const Eigen::Vector3f& signal_m) {
   auto slot = hn::Iota(di, 0);
   const auto step = hn::Set(di, num_lanes);
   for (int i = 0; i < graph.num_slots(); i += num_lanes) {
-    const auto dx = hn::Sub(hn::LoadU(d, graph.x_m() + i), x);
-    const auto dy = hn::Sub(hn::LoadU(d, graph.y_m() + i), y);
-    const auto dz = hn::Sub(hn::LoadU(d, graph.z_m() + i), z);
+    auto x_m = hn::Zero(d);
+    auto y_m = hn::Zero(d);
+    auto z_m = hn::Zero(d);
+    auto zero = hn::Zero(d);
+    hn::LoadInterleaved4(d, &graph.positions()[i].x_m, x_m, y_m, z_m, zero);
+    const auto dx = hn::Sub(x_m, x);
+    const auto dy = hn::Sub(y_m, y);
+    const auto dz = hn::Sub(z_m, z);
     const auto m2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
     const auto wins = hn::Lt(m2, best);
     const auto follows = hn::Lt(m2, next);
@@ -165,8 +170,11 @@ Winners NearestTwoInCells(const CellList& list, const Eigen::Vector3f& signal_m)
 }
 
 Winners NearestTwoInGrid(WinnerSearch& search, const Graph& graph, const Eigen::Vector3f& v) {
-  HWY_ALIGN const float signal_m[4] = {v.x(), v.y(), v.z(), 0.0F};
-  return NearestTwo(search, graph, signal_m);
+  Query query;
+  query.signal_m = {v.x(), v.y(), v.z(), 0.0F};
+  ListCells(search.grid(), query);
+  NearestTwo(search, graph, query);
+  return query.winners;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -203,6 +211,7 @@ WinnerSearch::WinnerSearch(int num_slots)
 
 void WinnerSearch::clear() {
   grid_.clear();
+  ++changes_;
   for (Occupancy& others : others_) others.clear(1.0F);
   inside_parts_.clear(kPart);
   spacing_m2_ = {};
@@ -213,12 +222,15 @@ void WinnerSearch::clear() {
 
 void WinnerSearch::add(int slot, bool inside, const Eigen::Vector3f& position_m) {
   if (linear_only_) return;
+  ++changes_;
   grid_.add(slot, inside ? 1 : 0, position_m);
   mark(slot);
 }
 
 void WinnerSearch::remove(int slot) {
-  if (!linear_only_) grid_.remove(slot);
+  if (linear_only_) return;
+  ++changes_;
+  grid_.remove(slot);
 }
 
 void WinnerSearch::move(int slot, const Eigen::Vector3f& position_m) {
@@ -226,6 +238,7 @@ void WinnerSearch::move(int slot, const Eigen::Vector3f& position_m) {
 }
 
 void WinnerSearch::mark(int slot) {
+  --until_mark_;
   const CellGrid::Place& place = grid_.place(slot);
   const Eigen::Vector3f center_m(place.center_m.data());
   const Eigen::Vector3f reach_m(place.reach_m.data());
@@ -241,6 +254,7 @@ bool WinnerSearch::others_within(int level, const Eigen::Vector3f& point_m,
 }
 
 Winners WinnerSearch::nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m) {
+  if (linear_only_) return nearest_two_linear(graph, signal_m);
   return HWY_DYNAMIC_DISPATCH(NearestTwoInGrid)(*this, graph, signal_m);
 }
 
@@ -260,11 +274,9 @@ Winners WinnerSearch::nearest_two_crowded(int level, const std::array<int, 3>& c
 Winners WinnerSearch::nearest_two_wide(const Graph& graph, const Eigen::Vector3f& signal_m,
                                        float second_m2) {
   ++counts_.wide;
-  if (!linear_only_) {
-    CellList list;
-    if (list_ball(signal_m, second_m2, list)) {
-      return HWY_DYNAMIC_DISPATCH(NearestTwoInCells)(list, signal_m);
-    }
+  CellList list;
+  if (list_ball(signal_m, second_m2, list)) {
+    return HWY_DYNAMIC_DISPATCH(NearestTwoInCells)(list, signal_m);
   }
   ++counts_.linear;
   return nearest_two_linear(graph, signal_m);
@@ -309,25 +321,23 @@ float WinnerSearch::fitting_side_m(int level) const {
   return std::max(kMinSide_m, kSidePerSpacing * std::sqrt(spacing_m2_[level]));
 }
 
-void WinnerSearch::learn_spacing(const Graph& graph, const Winners& winners, int num_searches) {
+void WinnerSearch::learn_spacing(const Graph& graph, const Winners& winners) {
   if (linear_only_ || !graph.alive(winners.first)) return;
   const int level = grid_.place(winners.first).level;
   spacing_m2_[level] += (winners.second_m2 - spacing_m2_[level]) * (1.0F / 64.0F);
   if (--until_check_[level] <= 0) {
     until_check_[level] = 64;
     const float ratio = fitting_side_m(level) * grid_.level(level).per_side;
-    if (ratio < 0.75F || ratio > 1.33F) {
+    if (ratio < 0.87F || ratio > 1.15F) {
       grid_.resize(level, fitting_side_m(level));
       mark_all(graph);
     }
   }
-  until_mark_ -= num_searches;
   if (until_mark_ <= 0) mark_all(graph);
 }
 
 // Forgets the places that nodes have left.
 void WinnerSearch::mark_all(const Graph& graph) {
-  until_mark_ = std::max(1024, 4 * graph.num_slots());
   for (int level = 0; level < CellGrid::kNumLevels; ++level) {
     others_[level].clear(grid_.level(level).side_m);
   }
@@ -335,6 +345,7 @@ void WinnerSearch::mark_all(const Graph& graph) {
   for (int slot = 0; slot < graph.num_slots(); ++slot) {
     if (graph.alive(slot)) mark(slot);
   }
+  until_mark_ = 256 + 2 * graph.num_slots();
 }
 
 }  // namespace ddgng

@@ -22,6 +22,23 @@ struct Winners {
   float second_m2 = 0.0F;
 };
 
+/// One search on its way: the cells to look at (ListCells), then the answer (NearestTwo).
+struct Query {
+  static constexpr int kBlockCells = 8;
+
+  Graph::Position signal_m;
+  // Of the 2 x 2 x 2 cells round the signal:
+  std::array<std::uint16_t, kBlockCells> cells{};  ///< those with nodes first
+  int num_cells = 0;
+  int level = 0;
+  std::array<int, 3> corner{};  ///< the first of the eight
+  float border_m2 = 0.0F;       ///< no other node of the level is nearer than this, squared
+  bool crowded = false;         ///< a cell goes on elsewhere
+  std::uint32_t layout = 0;     ///< CellGrid::layout() when they were listed
+
+  Winners winners;
+};
+
 /// Looks at every slot. Needs at least two nodes. O(slots).
 Winners nearest_two_linear(const Graph& graph, const Eigen::Vector3f& signal_m);
 
@@ -44,9 +61,9 @@ class WinnerSearch {
 
   Winners nearest_two(const Graph& graph, const Eigen::Vector3f& signal_m);
 
-  /// Tells the search one of the answers to a number of searches, so that its cells follow the
-  /// spacing of nodes (only speed depends on it).
-  void learn_spacing(const Graph& graph, const Winners& winners, int num_searches);
+  /// Tells the search an answer now and then, so that its cells follow the spacing of nodes (only
+  /// speed depends on it).
+  void learn_spacing(const Graph& graph, const Winners& winners);
 
   struct Counts {
     std::int64_t searches = 0;
@@ -59,6 +76,8 @@ class WinnerSearch {
   CellGrid& grid() { return grid_; }
   const CellGrid& grid() const { return grid_; }
   void count() { ++counts_.searches; }
+  /// Changes whenever a node comes, goes or changes its area.
+  std::uint32_t changes() const { return changes_; }
   /// Whether nodes of the other level may be in the 2 x 2 x 2 cells of this one from these on,
   /// except close to their border.
   bool others_in_block(int level, int cx, int cy, int cz) const {
@@ -86,6 +105,7 @@ class WinnerSearch {
   std::array<float, CellGrid::kNumLevels> spacing_m2_{};
   std::array<int, CellGrid::kNumLevels> until_check_{};
   int until_mark_ = 0;
+  std::uint32_t changes_ = 0;
   bool linear_only_ = false;
   Counts counts_;
 };

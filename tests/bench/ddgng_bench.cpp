@@ -76,9 +76,8 @@ class Loop {
     const int run = params_.utility_interval;  // divides the insertion interval
     std::array<Winners, 64> winners;
     for (std::size_t begin = 0; begin < signals.size(); begin += run) {
-      const std::span<const Signal> some = signals.subspan(begin, run);
-      growing_.signals(some, winners.data());
-      moments_.add(some, winners.data());
+      growing_.signals(signals.subspan(begin), run, winners.data());
+      moments_.add(signals.subspan(begin, run), winners.data());
       growing_.remove_useless();
       if ((begin + run) % params_.insertion_interval == 0) insert();
     }

@@ -51,7 +51,7 @@ TEST(Graph, RemovesEdgesWithTheNode) {
   graph.remove_node(1);
   EXPECT_EQ(graph.degree(0), 0);
   EXPECT_EQ(graph.degree(2), 0);
-  EXPECT_EQ(graph.x_m()[1], Graph::kFar_m);
+  EXPECT_EQ(graph.position_m(1).x(), Graph::kFar_m);
 }
 
 // Living slots stay below num_slots when the highest ones die.

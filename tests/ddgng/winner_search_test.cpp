@@ -114,7 +114,7 @@ TEST_P(WinnerSearchTest, CellsEqualBruteForce) {
       const Winners winners = search.nearest_two(graph, query);
       expect_equal(brute_force(graph, query), winners);
       if (HasFatalFailure()) return;
-      search.learn_spacing(graph, winners, 1);
+      search.learn_spacing(graph, winners);
     }
     if (shape == Shape::kUniform) {
       EXPECT_LT(search.counts().linear, search.counts().searches / 2);
