@@ -30,9 +30,7 @@ class Growing {
   /// ageing, decay. Writes the winners of each; they may have been removed since. The rest is what
   /// comes next: its first winners are looked for already. Needs started(). growing_signals.cpp
   void signals(std::span<const Signal> signals, std::size_t num, Winners* winners);
-  void signals(std::span<const Signal> all, Winners* winners) {
-    signals(all, all.size(), winners);
-  }
+  void signals(std::span<const Signal> all, Winners* winners) { signals(all, all.size(), winners); }
 
   enum class Weighting { kError, kErrorAndStrength };
   /// A node half way between the node of the largest (weighted) error and its worst neighbour.

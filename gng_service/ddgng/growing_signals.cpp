@@ -108,8 +108,8 @@ HWY_INLINE bool MayDisturb(const Query& query, const Moves& moves, const Query& 
   const hn::CappedTag<float, 4> d;
   bool overlap = true;
   for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
-    const auto apart = hn::Abs(
-        hn::Sub(hn::Load(d, &next.signal_m.x_m + i), hn::Load(d, &query.signal_m.x_m + i)));
+    const auto apart =
+        hn::Abs(hn::Sub(hn::Load(d, &next.signal_m.x_m + i), hn::Load(d, &query.signal_m.x_m + i)));
     const auto sum = hn::Add(hn::Load(d, moves.off_m + i), hn::Set(d, radius_m));
     overlap = overlap && hn::AllTrue(d, hn::Le(apart, hn::Mul(sum, hn::Set(d, kMargin))));
   }
@@ -175,7 +175,8 @@ HWY_INLINE int Learn(GrowingState& state, const Winners& winners) {
   const std::uint16_t* const wins = state.graph.wins();
   int oldest = 0;
   for (int k = 0; k < links.degree; ++k) {
-    const auto age = static_cast<std::uint16_t>(wins[s1] + wins[links.neighbour[k]] - links.born[k]);
+    const auto age =
+        static_cast<std::uint16_t>(wins[s1] + wins[links.neighbour[k]] - links.born[k]);
     oldest = std::max(oldest, static_cast<int>(age));
   }
   return oldest;
@@ -201,13 +202,15 @@ void Signals(GrowingState& state, std::span<const Signal> signals, std::size_t n
     return state.ahead[(state.turn + i) % state.ahead.size()];
   };
   Ahead& first = ahead(0);
-  const bool is_found = first.found && first.changes == state.search.changes() &&
-                        first.is_of(signals[0].position_m);
+  const bool is_found =
+      first.found && first.changes == state.search.changes() && first.is_of(signals[0].position_m);
   if (!is_found) {
     ListCellsOf(state, signals[0], first);
     Find(state, first);
   }
-  if (signals.size() > 1) ListCellsOf(state, signals[1], ahead(1));
+  if (signals.size() > 1 && !ahead(1).is_of(signals[1].position_m)) {
+    ListCellsOf(state, signals[1], ahead(1));
+  }
   for (std::size_t i = 0; i < num; ++i) {
     Ahead& now = ahead(i);
     Ahead& next = ahead(i + 1);
@@ -221,7 +224,7 @@ void Signals(GrowingState& state, std::span<const Signal> signals, std::size_t n
     LearnAndMove(state, now.query, next);
     winners[i] = now.query.winners;
     now.found = false;
-    if (state.error_decay.shrink_due() || state.utility_decay[0].shrink_due() || state.utility_decay[1].shrink_due()) state.shrink();
+    if (HWY_UNLIKELY(state.shrink_due())) state.shrink();
   }
   state.turn += static_cast<std::uint32_t>(num);
   state.counts.signals += static_cast<std::int64_t>(num);
@@ -240,7 +243,7 @@ void SignalsLinearly(GrowingState& state, std::span<const Signal> signals, std::
       state.graph.move_towards(j, signal_m, state.params.neighbour_rate);
     }
     if (HWY_UNLIKELY(oldest > state.params.max_edge_age)) state.remove_old_edges(s1);
-    if (state.error_decay.shrink_due() || state.utility_decay[0].shrink_due() || state.utility_decay[1].shrink_due()) state.shrink();
+    if (HWY_UNLIKELY(state.shrink_due())) state.shrink();
   }
   state.counts.signals += static_cast<std::int64_t>(num);
 }

@@ -17,8 +17,8 @@
 
 namespace ddgng {
 
-/// A signal to come: the search for it runs ahead of the changes that the signals before it make, so
-/// that the processor overlaps the two, and is repeated where these touch its answer.
+/// A signal to come: the search for it runs ahead of the changes that the signals before it make,
+/// so that the processor overlaps the two, and is repeated where these touch its answer.
 struct Ahead {
   Query query;
   bool found = false;         ///< query.winners stand
@@ -40,7 +40,10 @@ struct GrowingState {
   void remove(int slot);
   /// The edges of the winner that are older than max_edge_age, and nodes that lose their last edge.
   void remove_old_edges(int s1);
-  /// When the decays have grown too far.
+  bool shrink_due() const {
+    return error_decay.shrink_due() || utility_decay[0].shrink_due() ||
+           utility_decay[1].shrink_due();
+  }
   void shrink();
   void set_inside(int slot, bool inside_now);
 

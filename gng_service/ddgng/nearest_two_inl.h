@@ -53,7 +53,8 @@ HWY_INLINE void ListBlock(const CellGrid& grid, int index, Query& query) {
   int num = 0;
   query.cells = {};
   HWY_UNROLL(8)
-  for (std::uint32_t i = 0; i < Query::kBlockCells; ++i) {  // without branches: empty ones overwrite
+  for (std::uint32_t i = 0; i < Query::kBlockCells;
+       ++i) {  // without branches: empty ones overwrite
     const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level.kPerY + (i >> 2) * level.kPerZ;
     const std::uint16_t first = table[(entry + off) & level.mask];
     query.cells[num] = first;
