@@ -2,6 +2,7 @@
 // ladder_relay: carries chosen channels over TCP between the robot and a ground station, so that
 // the robot's multicast never leaves it. --serve on the robot, --connect on the ground. Exit codes
 // as in runtime/service.h.
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -33,15 +34,30 @@ struct Arguments {
 };
 
 /// "host:port" or "[host]:port".
-std::pair<std::string, std::string> host_and_port(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) {
-    throw std::runtime_error("'" + text + "' is not ADDRESS:PORT");
+struct Peer {
+  std::string host, port;
+
+  explicit Peer(const std::string& text) {
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) {
+      throw std::runtime_error("'" + text + "' is not ADDRESS:PORT");
+    }
+    host = text.substr(0, colon);
+    port = text.substr(colon + 1);
+    if (host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
   }
-  std::string host = text.substr(0, colon);
-  if (host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  return {host, text.substr(colon + 1)};
-}
+
+  tcp::endpoint to_serve() const {
+    boost::system::error_code error;
+    const auto address = asio::ip::make_address(host, error);
+    std::uint16_t number = 0;
+    const auto [rest, wrong] = std::from_chars(port.data(), port.data() + port.size(), number);
+    if (error || wrong != std::errc() || rest != port.data() + port.size()) {
+      throw std::runtime_error("'" + host + ":" + port + "' is not an IP address and a port");
+    }
+    return {address, number};
+  }
+};
 
 std::string lcm_url(const Arguments& arguments) {
   if (!arguments.url.empty()) return arguments.url;
@@ -63,18 +79,16 @@ class Relay {
         tick_(io) {
     const std::string token =
         arguments.token_file.empty() ? "" : runtime::read_token(arguments.token_file);
-    const auto [host, port] =
-        host_and_port(is_serving(arguments) ? arguments.serve : arguments.connect);
+    const Peer peer(is_serving(arguments) ? arguments.serve : arguments.connect);
     if (is_serving(arguments)) {
-      const auto address = asio::ip::make_address(host);
-      if (!address.is_loopback() && token.empty()) {
-        throw std::runtime_error("at " + host + " everybody on the network could connect: " +
+      const tcp::endpoint address = peer.to_serve();
+      if (!address.address().is_loopback() && token.empty()) {
+        throw std::runtime_error("at " + peer.host + " everybody on the network could connect: " +
                                  "--token-file is needed there");
       }
-      server_.emplace(io, tcp::endpoint(address, static_cast<std::uint16_t>(std::stoi(port))),
-                      token, endpoint_);
+      server_.emplace(io, address, token, endpoint_);
     } else {
-      client_.emplace(io, host, port, token, endpoint_);
+      client_.emplace(io, peer.host, peer.port, token, endpoint_);
     }
     listen();
     tick();

@@ -36,11 +36,6 @@ struct Arguments {
   std::string token_file, page_folder, log, url;
 };
 
-/// Thrown for what the caller can mend; exit code 2.
-struct ArgumentError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 /// The page lies where scripts/viewer and the package put it, seen from the program.
 std::string page_beside_program() {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "../share/ladder/viewer")
@@ -138,10 +133,12 @@ void tick(asio::steady_timer& timer, Source& source, viewer::WebServer& server) 
 }
 
 int run(const Arguments& arguments) {
-  const auto address = asio::ip::make_address(arguments.address);
+  boost::system::error_code error;
+  const auto address = asio::ip::make_address(arguments.address, error);
+  if (error) throw std::runtime_error("'" + arguments.address + "' is not an IP address");
   if (!address.is_loopback() && arguments.token_file.empty()) {
-    throw ArgumentError("at " + arguments.address +
-                        " everybody on the network could look: --token-file is needed there");
+    throw std::runtime_error("at " + arguments.address +
+                             " everybody on the network could look: --token-file is needed there");
   }
   asio::io_context io;
   Source source(io, arguments);

@@ -60,6 +60,7 @@ TEST_F(ViewerProcess, WrongArguments) {
   EXPECT_THAT(refusal({"--page", "/no/such", "--url", url_}), HasSubstr("viewer/web/build"));
   EXPECT_THAT(refusal({"--page", page_, "--log", "/no/such.lcm"}), HasSubstr("/no/such.lcm"));
   EXPECT_THAT(refusal({"--page", page_, "--address", "0.0.0.0"}), HasSubstr("--token-file"));
+  EXPECT_THAT(refusal({"--page", page_, "--address", "nonsense"}), HasSubstr("nonsense"));
   refusal({"--no-such-option"});
 }
 
