@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_in_a_box/chain.h"
 
+#include "base/check.h"
 #include "gng_service/service.h"
 #include "ladder_service/service.h"
 #include "sensor_service/service.h"
@@ -31,12 +32,15 @@ struct Chain::Recorder {
   }
 };
 
-Chain::Chain(const runtime::Config& config) : connection_(runtime::open_lcm("memq://")) {
-  const runtime::ServiceDescription descriptions[] = {
-      sensor_service::description(), gng_service::description(), ladder_service::description()};
+Chain::Chain(const runtime::Config& config)
+    : config_(config),
+      connection_(runtime::open_lcm("memq://")),
+      pump_(connection_),
+      descriptions_{sensor_service::description(), gng_service::description(),
+                    ladder_service::description()} {
   std::vector<std::string> tables;
-  for (const runtime::ServiceDescription& description : descriptions) {
-    members_.push_back(std::make_unique<Member>(description, config, connection_));
+  for (const runtime::ServiceDescription& description : descriptions_) {
+    members_.push_back(std::make_unique<Member>(description, config_, connection_));
     tables.push_back(description.name);
   }
   config.check_all_read(tables, runtime::known_config_tables());
@@ -58,17 +62,38 @@ void Chain::feed(const std::string& channel, const void* bytes, std::size_t num_
   work({.monotonic_us = utime_us, .utime_us = utime_us});
 }
 
+std::unique_ptr<Chain::Member>& Chain::member(const std::string& service) {
+  std::size_t at = 0;
+  while (at < descriptions_.size() && descriptions_[at].name != service) ++at;
+  CHECK(at < descriptions_.size(), "a service of the chain: sensor, gng, ladder");
+  return members_[at];
+}
+
+void Chain::kill(const std::string& service) {
+  member(service).reset();
+}
+
+void Chain::start_anew(const std::string& service) {
+  std::unique_ptr<Member>& again = member(service);
+  const auto at = static_cast<std::size_t>(&again - members_.data());
+  again.reset();
+  again = std::make_unique<Member>(descriptions_[at], config_, connection_);
+}
+
 void Chain::work(const base::Now& now) {
-  // All buses share the connection, so any of them drains for all; a message published by a step is
+  // All buses share the connection, so one drains for all; a message published by a step is
   // delivered in the next round.
-  while (members_.front()->bus.drain() > 0) {
-    for (const auto& member : members_) member->service->step(now);
+  while (pump_.drain() > 0) {
+    for (const auto& member : members_) {
+      if (member != nullptr) member->service->step(now);
+    }
   }
 }
 
 std::int64_t Chain::num_rejected() const {
   std::int64_t sum = 0;
   for (const auto& member : members_) {
+    if (member == nullptr) continue;
     for (const auto& input : member->bus.inputs()) sum += input->counts.rejected;
   }
   return sum;

@@ -33,6 +33,11 @@ class Chain {
   void feed(const std::string& channel, const void* bytes, std::size_t num_bytes,
             std::int64_t utime_us);
 
+  /// The process of that service ("sensor", "gng", "ladder") is gone, without a word.
+  void kill(const std::string& service);
+  /// It is there again and knows nothing.
+  void start_anew(const std::string& service);
+
   /// Messages that a service refused, over all causes.
   std::int64_t num_rejected() const;
 
@@ -40,9 +45,13 @@ class Chain {
   struct Member;
   struct Recorder;
   void work(const base::Now& now);
+  std::unique_ptr<Member>& member(const std::string& service);
 
+  runtime::Config config_;
   std::shared_ptr<lcm_t> connection_;
-  std::vector<std::unique_ptr<Member>> members_;
+  runtime::Bus pump_;  ///< delivers for all
+  std::vector<runtime::ServiceDescription> descriptions_;
+  std::vector<std::unique_ptr<Member>> members_;  ///< in that order; null: killed
   std::unique_ptr<Recorder> recorder_;
 };
 

@@ -15,9 +15,10 @@ using simulator::SessionEvent;
 
 constexpr std::int64_t kImuLost_us = 100'000;
 
-climb_controller::CycleParams cycle_params(const ClimbBoxParams& params) {
+climb_controller::CycleParams cycle_params(const ClimbBoxParams& params, std::uint64_t num_starts) {
   climb_controller::CycleParams cycle = params.cycle;
-  cycle.controller.session_id = base::Rng(params.seed, 1).next() | 1U;
+  const std::uint64_t stream = num_starts == 0 ? 1 : 1000 + num_starts;
+  cycle.controller.session_id = base::Rng(params.seed, stream).next() | 1U;
   return cycle;
 }
 
@@ -30,19 +31,48 @@ simulator::MonitorParams monitor_params(const ClimbBoxParams& params, int master
 }  // namespace
 
 ClimbBox::ClimbBox(const ClimbBoxParams& params)
-    : bus_(params.seed, params.bus_latency_us),
+    : params_(params),
+      bus_(params.seed, params.bus_latency_us),
       plant_(params.plant, bus_, params.mechanics),
       foreign_port_(bus_.attach(127)),
       transport_(bus_),
       chip_(plant_),
-      lines_(gpio::LinesParams{}, chip_),
       perception_(params.perception, params.seed),
-      master_(servo_bus_params(params.drives, params.cycle.controller.climb), transport_),
-      cycle_(cycle_params(params), master_),
-      monitor_(monitor_params(params, transport_.port())),
-      attitude_from_samples_(params.attitude_from_samples) {
+      monitor_(monitor_params(params, transport_.port())) {
+  make_controller();
   bus_.record(true);
   monitor_.on_truth(plant_.truth());
+}
+
+void ClimbBox::make_controller() {
+  cycle_.reset();
+  master_.emplace(servo_bus_params(params_.drives, params_.cycle.controller.climb), transport_);
+  cycle_.emplace(cycle_params(params_, num_starts_), *master_);
+  lines_.emplace(gpio::LinesParams{}, chip_);
+  ++num_starts_;
+}
+
+void ClimbBox::start_anew() {
+  for (can::ReceivedFrame unread; transport_.receive(unread) == can::TransferStatus::kDone;) {
+  }
+  transport_.purge_transmit_queue();
+  make_controller();
+  clock_ = climb_controller::CycleClock(climb_controller::CycleClockParams{});
+  attitude_ = climb::Attitude(climb::AttitudeParams{});
+  imu_heard_us_ = -1'000'000'000;
+  inbox_ = {};
+  report_ = {};
+  for (climb::OperatorCommand unread; orders_.pop(unread);) continue;
+  terminating_ = false;
+  num_ending_cycles_ = 0;
+  last_seq_ = 0;
+  flags_ = 0;
+  told_state_ = ControllerState::kBoot;
+  told_seq_ = -1;
+  was_resetting_ = false;
+  pause_until(now_us_);
+  monitor_.on_session(now_us_, SessionEvent::kDisarmed);
+  monitor_.on_run(now_us_);
 }
 
 Eigen::Isometry3d ClimbBox::T_odom_body() const {
@@ -72,8 +102,8 @@ void ClimbBox::millisecond() {
   transport_.set_time(now_us_);
   observe();
   if (now_us_ < hung_until_us_ || now_us_ % kCycle_us == 0) return;
-  lines_.poll(now_us_);
-  cycle_.poll(now_us_);
+  lines_->poll(now_us_);
+  cycle_->poll(now_us_);
 }
 
 void ClimbBox::observe() {
@@ -89,7 +119,7 @@ void ClimbBox::observe() {
 }
 
 void ClimbBox::step() {
-  const gpio::LineStates& lines = lines_.poll(now_us_);
+  const gpio::LineStates& lines = lines_->poll(now_us_);
   for (const climb::Leg leg : climb::kLegs) inbox_.lines.touch[leg] = lines.touch[leg];
   inbox_.lines.estop_clear = !lines.estop_active;
   inbox_.lines.lost = lines.lost;
@@ -100,7 +130,7 @@ void ClimbBox::step() {
   inbox_.command = {};
   orders_.pop(inbox_.command);
   inbox_.faults = flags_ | clock_.begin(now_us_, now_us_ + slept_us_);
-  cycle_.step(now_us_, inbox_, report_);
+  cycle_->step(now_us_, inbox_, report_);
   tell_monitor();
   if (terminating_) end_when_possible();
   if (watcher_ != nullptr) watcher_->on_report(report_);
@@ -111,7 +141,7 @@ void ClimbBox::read_imu() {
   attitude_.add({now_us_, told.specific_force_m_s2, told.angular_rate_rad_s});
   if (!imu_silent) {
     inbox_.imu.q_odom_body =
-        (attitude_from_samples_ ? attitude_.q_odom_body() : told.q_world_body) * imu_turn;
+        (params_.attitude_from_samples ? attitude_.q_odom_body() : told.q_world_body) * imu_turn;
     inbox_.imu.acceleration_m_s2 = imu_falls ? 0.0 : told.specific_force_m_s2.norm();
     imu_heard_us_ = now_us_;
   }
@@ -161,7 +191,7 @@ void ClimbBox::terminate() {
 
 void ClimbBox::end_when_possible() {
   if (num_ending_cycles_ == 0 && climb_controller::finishes_first(state())) return;
-  if (num_ending_cycles_ == 0) cycle_.hand_over();
+  if (num_ending_cycles_ == 0) cycle_->hand_over();
   if (++num_ending_cycles_ == climb_controller::kHandOverCycles) kill();
 }
 

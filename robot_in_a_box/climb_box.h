@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "can/cia402_bus.h"
 #include "climb/attitude.h"
@@ -68,13 +69,13 @@ class ClimbBox {
   void order(climb::Order what) { order({what, session_id(), ++last_seq_}); }
   /// As the message that the operator's tool sends; refused where too many wait already.
   void order(const climb::OperatorCommand& command);
-  std::uint64_t session_id() const { return cycle_.session_id(); }
+  std::uint64_t session_id() const { return cycle_->session_id(); }
   std::int64_t last_seq() const { return last_seq_; }
 
   std::int64_t now_us() const { return now_us_; }
   const climb_controller::CycleReport& report() const { return report_; }
   climb::ControllerState state() const { return report_.output.state; }
-  const climb::Controller& controller() const { return cycle_.controller(); }
+  const climb::Controller& controller() const { return cycle_->controller(); }
 
   simulator::RobotPlant& plant() { return plant_; }
   const simulator::RobotPlant& plant() const { return plant_; }
@@ -93,6 +94,7 @@ class ClimbBox {
 
   // --- what may happen to the controller's process and its sensors -------------------------------
   void kill() { pause_until(INT64_MAX); }  ///< gone, without a word
+  void start_anew();                       ///< after kill(): another session, which knows nothing
   void hang(std::int64_t duration_us) { pause_until(now_us_ + duration_us); }
   void flag_fault(climb::Fault fault) { flags_ |= climb::flag(fault); }  ///< found by the service
   void clear_flag(climb::Fault fault) { flags_ &= ~climb::flag(fault); }
@@ -111,6 +113,7 @@ class ClimbBox {
   std::uint64_t frame_hash() const { return frame_hash_; }
 
  private:
+  void make_controller();
   void pause_until(std::int64_t until_us);
   void millisecond();
   void observe();
@@ -120,24 +123,30 @@ class ClimbBox {
   void end_when_possible();
   void hash(const simulator::CarriedFrame& carried);
 
+  ClimbBoxParams params_;
   simulator::MemoryBus bus_;
   simulator::RobotPlant plant_;
   int foreign_port_;
   MemoryTransport transport_;
   MemoryChip chip_;
-  gpio::Lines lines_;
   PerceivedLadder perception_;
   Eyes* eyes_ = &perception_;
-  can::Cia402Bus master_;
-  climb_controller::ControlCycle cycle_;
   simulator::Monitor monitor_;
 
   std::int64_t now_us_ = 0;
   std::int64_t slept_us_ = 0;
-  climb_controller::CycleClock clock_{climb_controller::CycleClockParams{}};
   std::int64_t hung_until_us_ = 0;
+  BoxWatcher* watcher_ = nullptr;
+  std::uint64_t frame_hash_ = 0xCBF29CE484222325ULL;
+
+  // --- what is the controller's process, and goes with it
+  // -----------------------------------------
+  std::optional<gpio::Lines> lines_;
+  std::optional<can::Cia402Bus> master_;
+  std::optional<climb_controller::ControlCycle> cycle_;
+  std::uint64_t num_starts_ = 0;
+  climb_controller::CycleClock clock_{climb_controller::CycleClockParams{}};
   std::int64_t imu_heard_us_ = -1'000'000'000;
-  bool attitude_from_samples_;
   climb::Attitude attitude_{climb::AttitudeParams{}};
   climb_controller::CycleInbox inbox_;
   climb_controller::CycleReport report_;
@@ -149,8 +158,6 @@ class ClimbBox {
   climb::ControllerState told_state_ = climb::ControllerState::kBoot;
   std::int64_t told_seq_ = -1;
   bool was_resetting_ = false;
-  BoxWatcher* watcher_ = nullptr;
-  std::uint64_t frame_hash_ = 0xCBF29CE484222325ULL;
 };
 
 }  // namespace robot_in_a_box

@@ -14,7 +14,6 @@ namespace {
 
 namespace channels = runtime::channels;
 
-constexpr std::int64_t kEpoch_us = 1'767'225'600'000'000;  // 2026-01-01, for the wall clock
 constexpr std::int64_t kImuPeriod_us = 10'000;
 constexpr std::int64_t kPosePeriod_us = 20'000;
 constexpr std::int64_t kClimbPeriod_us = 50'000;
@@ -43,6 +42,16 @@ void FullPerception::look(std::int64_t now_us, simulator::RobotPlant& plant,
   hear(now_us, told.output.pose.T_odom_body());
   tell_of_robot(now_us, plant, told);
   if (now_us >= heads_.due_us()) flash(now_us, plant);
+}
+
+void FullPerception::forget_controller() {
+  waiting_.clear();
+  inbox_ = climb_controller::RungsInbox{climb_controller::PerceptionParams{}};
+  memory_ = climb_controller::RungMemory(params_.memory);
+  newest_ = {};
+  newest_.reserve();
+  ++climb_.session_id;
+  climb_.seq = pose_.seq = 0;
 }
 
 void FullPerception::hear(std::int64_t now_us, const Eigen::Isometry3d& T_odom_body) {

@@ -27,6 +27,7 @@ struct FullPerceptionParams {
 
 class FullPerception : public Eyes {
  public:
+  static constexpr std::int64_t kEpoch_us = 1'767'225'600'000'000;  ///< 2026-01-01: the wall clock
   /// Every message with its time: what goes into the services and what comes out, truth too.
   using Log = std::function<void(const char* channel, const void* bytes, std::size_t num_bytes,
                                  std::int64_t utime_us)>;
@@ -42,6 +43,13 @@ class FullPerception : public Eyes {
   std::int64_t received_us() const override { return newest_.received_us; }
 
   simulator::BodyHeads& heads() { return heads_; }
+  Chain& chain() { return chain_; }
+  /// From somebody else: what arrives besides.
+  void feed(const char* channel, const void* bytes, std::size_t num_bytes) {
+    chain_.feed(channel, bytes, num_bytes, kEpoch_us + now_us_);
+  }
+  /// The controller is another one: what the last one had heard is gone.
+  void forget_controller();
   void log_to(Log log) { log_ = std::move(log); }
   /// The newest that the services said, seen at once.
   const ladder_msgs::ladder_t& rungs() const { return rungs_; }
