@@ -24,10 +24,11 @@ class GaveUp(Exception):
 
 
 class ClimbOperator:
-    def __init__(self, robot, on_look=lambda: None, until_s=None):
+    def __init__(self, robot, on_look=lambda: None, until_s=None, max_stops=MAX_STOPS):
         self.robot = robot
         self.on_look = on_look
         self.until_s = until_s
+        self.max_stops = max_stops
         self.stops = []  # of latched ones: seconds since the start, state, reason
         self.dock_rungs = None
         self.session = None
@@ -84,8 +85,8 @@ class ClimbOperator:
         while True:
             self.look()
             state = self.robot.state_name
-            if self._is_stopped(state):
-                self._recover()
+            if self.is_stopped(state):
+                self.recover()
                 self._send(down)
             elif state == "HOLD" and self.is_there(down):
                 return "dock" if down else "top"
@@ -111,14 +112,14 @@ class ClimbOperator:
         return self.robot.state["at_top"] != 0
 
     # --- parts ----------------------------------------------------------------------------------------------------------
-    def _is_stopped(self, state):
+    def is_stopped(self, state):
         is_new = self.robot.state is not None and self.session is not None and self.robot.state["session_id"] != self.session
         is_silent = time.monotonic() - self.robot.state_s > 1.0
         return state in LATCHED or is_new or is_silent or state == "DISARMED"
 
     def _send(self, down):
         for _ in range(3):
-            if self.give("climb", *(["--down"] if down else [])) or self._is_stopped(self.robot.state_name):
+            if self.give("climb", *(["--down"] if down else [])) or self.is_stopped(self.robot.state_name):
                 return
             self.pause(SETTLING_S)
         if self.robot.state_name not in ("HOLD", "CLIMBING", "PROTECTIVE_HOLD"):
@@ -138,10 +139,10 @@ class ClimbOperator:
         reason = self.robot.reason
         self.was_starved = self.was_starved or reason in STARVED
         self.stops.append({"at_s": round(time.monotonic() - self.robot.started_s, 1), "state": self.robot.state_name, "reason": reason})
-        if len(self.stops) > MAX_STOPS:
+        if len(self.stops) > self.max_stops:
             raise GaveUp(f"{self.robot.state_name}: {reason}")
 
-    def _recover(self):
+    def recover(self):
         """After a stop: its cause gone, reset, arm. A controller that was started anew does not know which claws hold: the dock first."""
         if not self.wait(lambda: time.monotonic() - self.robot.state_s < 0.5, PATIENCE_S):
             raise GaveUp("no controller is heard")

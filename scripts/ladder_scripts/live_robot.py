@@ -172,7 +172,8 @@ class LiveRobot:
 
     def _take(self, name, values):
         if name == "climb_state_t":
-            self.state, self.state_s = values, time.monotonic()
+            if self.state is None or values["utime"] > self.state["utime"]:  # an old log may be played beside
+                self.state, self.state_s = values, time.monotonic()
         elif name == "health_t":
             self.health[values["service"]] = values
         elif name == "event_t" and values["level"] >= self.types["event_t"].constants["LEVEL_WARNING"]:
