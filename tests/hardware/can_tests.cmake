@@ -28,4 +28,13 @@ if(TARGET climb_box AND TARGET climb_controller_main)
   target_compile_definitions(ladder_fault_rows PRIVATE LADDER_BIN_DIR="${PROJECT_BINARY_DIR}/bin")
   set_target_properties(ladder_fault_rows PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests/bin")
   add_dependencies(ladder_fault_rows climb_controller_main ladder_command_main ladder_plant_main)
+
+  add_executable(hardware_climb_ladder climb_ladder_test.cpp main_in_vm.cpp)
+  target_link_libraries(hardware_climb_ladder PRIVATE ladder_runtime test_support ladder_options GTest::gmock GTest::gtest)
+  target_include_directories(hardware_climb_ladder PRIVATE "${PROJECT_SOURCE_DIR}")
+  target_compile_definitions(
+    hardware_climb_ladder PRIVATE LADDER_BIN_DIR="${PROJECT_BINARY_DIR}/bin"
+                                  LADDER_BUS_LOG="${PROJECT_BINARY_DIR}/tests/hardware/climb_ladder.candump")
+  set_target_properties(hardware_climb_ladder PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests/bin")
+  add_dependencies(hardware_climb_ladder climb_controller_main ladder_command_main ladder_plant_main)
 endif()
