@@ -5,16 +5,19 @@
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <lcm/lcm-cpp.hpp>
 
+#include "robot_in_a_box/byte_hash.h"
 #include "robot_in_a_box/fork_pool.h"
 #include "robot_in_a_box/full_climb.h"
 
 namespace {
 
+using robot_in_a_box::ByteHash;
 using robot_in_a_box::ClimbEnd;
 using robot_in_a_box::FullClimb;
 using robot_in_a_box::FullClimbParams;
@@ -29,6 +32,7 @@ struct Arguments {
   std::string json_path;
   std::string log_path;
   double log_s = 0.0;
+  bool logs_inputs_only = false;
   std::vector<std::string> config_files;
   std::vector<std::string> overrides;
   bool trace = false;
@@ -98,18 +102,35 @@ std::string crashed_line(const Task& task) {
          ", \"end\": \"crashed\"}";
 }
 
-/// Every message of the climb into an LCM log, up to log_s.
-void log_into(lcm::LogFile& log, double log_s, FullClimb& full) {
-  full.eyes().log_to([&log, log_s, &full](const char* channel, const void* bytes,
-                                          std::size_t num_bytes, std::int64_t utime_us) {
-    if (log_s > 0.0 && 1e-6 * static_cast<double>(full.climb().box().now_us()) > log_s) return;
-    lcm::LogEvent event{};
-    event.timestamp = utime_us;
-    event.channel = channel;
-    event.data = const_cast<void*>(bytes);  // NOLINT: LCM's structure has no const
-    event.datalen = static_cast<std::int32_t>(num_bytes);
-    log.writeEvent(&event);
-  });
+std::string hash_in_json(const ByteHash& made) {
+  char text[100];
+  std::snprintf(text, sizeof text, ", \"made\": \"%lld messages, hash %016llx\"",
+                static_cast<long long>(made.num_messages()),
+                static_cast<unsigned long long>(made.value()));
+  return text;
+}
+
+bool is_made_by_perception(std::string_view channel) {
+  return channel == "LADDER_CLOUD" || channel == "LADDER_TOPOLOGY" || channel == "LADDER_RUNGS";
+}
+
+/// Every message of the climb into an LCM log, up to log_s; what perception makes of them is
+/// hashed, so that a replay of the log can be compared.
+void log_into(lcm::LogFile& log, const Arguments& arguments, FullClimb& full, ByteHash& made) {
+  full.eyes().log_to(
+      [&](const char* channel, const void* bytes, std::size_t num_bytes, std::int64_t utime_us) {
+        const double now_s = 1e-6 * static_cast<double>(full.climb().box().now_us());
+        if (arguments.log_s > 0.0 && now_s > arguments.log_s) return;
+        const bool is_made = is_made_by_perception(channel);
+        if (is_made) made.add(channel, bytes, num_bytes);
+        if (is_made && arguments.logs_inputs_only) return;
+        lcm::LogEvent event{};
+        event.timestamp = utime_us;
+        event.channel = channel;
+        event.data = const_cast<void*>(bytes);  // NOLINT: LCM's structure has no const
+        event.datalen = static_cast<std::int32_t>(num_bytes);
+        log.writeEvent(&event);
+      });
 }
 
 void trace(FullClimb& full) {
@@ -134,9 +155,10 @@ std::string run(const Arguments& arguments, const Task& task) {
   const auto begin = std::chrono::steady_clock::now();
   FullClimb full(task.params, runtime::Config::load(arguments.config_files, arguments.overrides));
   std::optional<lcm::LogFile> log;
+  ByteHash made;
   if (!arguments.log_path.empty()) {
     log.emplace(arguments.log_path, "w");
-    log_into(*log, arguments.log_s, full);
+    log_into(*log, arguments, full, made);
   }
   if (arguments.trace) full.climb().each_second([&full] { trace(full); });
   full.climb().run_s(3.0);
@@ -144,7 +166,9 @@ std::string run(const Arguments& arguments, const Task& task) {
   if (full.climb().hang()) end = full.climb().climb(true, arguments.max_s);
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  return json_line(task, end, full, wall_s);
+  std::string line = json_line(task, end, full, wall_s);
+  if (log) line.insert(line.size() - 1, hash_in_json(made));
+  return line;
 }
 
 void parse(CLI::App& app, Arguments& arguments) {
@@ -157,6 +181,7 @@ void parse(CLI::App& app, Arguments& arguments) {
   app.add_option("--json-lines", arguments.json_path, "append one line per climb");
   app.add_option("--log", arguments.log_path, "every message of the last climb, as an LCM log");
   app.add_option("--log-s", arguments.log_s, "only up to this simulated time");
+  app.add_flag("--log-inputs", arguments.logs_inputs_only, "only what ladder_replay reads");
   app.add_option("-c,--config", arguments.config_files, "TOML file; later ones win");
   app.add_option("--set", arguments.overrides, "table.key=value")->allow_extra_args(false);
   app.add_flag("--trace", arguments.trace, "one line per simulated second");

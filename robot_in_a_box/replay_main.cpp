@@ -12,6 +12,7 @@
 #include <CLI/CLI.hpp>
 #include <lcm/lcm-cpp.hpp>
 
+#include "robot_in_a_box/byte_hash.h"
 #include "robot_in_a_box/chain.h"
 
 namespace {
@@ -29,6 +30,7 @@ struct Arguments {
 struct Counts {
   int in = 0, out = 0;
   std::int64_t rejected = 0;
+  robot_in_a_box::ByteHash made;  ///< what the chain made, without what is copied
 };
 
 /// Throws std::runtime_error where a log cannot be opened or written.
@@ -57,6 +59,7 @@ Counts replay(const Arguments& arguments) {
   std::string write_error;
   chain.record({"LADDER_CLOUD", "LADDER_TOPOLOGY", "LADDER_RUNGS"},
                [&](const char* channel, const void* bytes, std::size_t num_bytes) {
+                 counts.made.add(channel, bytes, num_bytes);
                  try {  // called from C code
                    write(channel, bytes, num_bytes);
                  } catch (const std::exception& error) {
@@ -104,6 +107,8 @@ int main(int argc, char** argv) {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::fprintf(stderr, "replayed %d messages in %.2f s, %d written, %lld rejected\n", counts.in,
                  seconds, counts.out, static_cast<long long>(counts.rejected));
+    std::printf("%lld messages, hash %016llx\n", static_cast<long long>(counts.made.num_messages()),
+                static_cast<unsigned long long>(counts.made.value()));
     if (counts.in == 0) {
       std::fprintf(stderr,
                    "%s holds no LADDER_TOF_*, LADDER_IMU or LADDER_POSE message before its end or "
