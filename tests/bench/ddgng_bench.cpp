@@ -111,6 +111,26 @@ const Loop& grown(int num_nodes) {
   return loops.try_emplace(num_nodes, bench_params(num_nodes)).first->second;
 }
 
+/// The same with the threshold of the paper's reference 7, at which nodes are removed and others
+/// inserted for them all the time.
+const Loop& grown_with_removals(int num_nodes) {
+  static std::map<int, Loop> loops;
+  GrowingParams params = bench_params(num_nodes);
+  params.utility_threshold = GrowingParams{}.utility_threshold;
+  return loops.try_emplace(num_nodes, params).first->second;
+}
+
+/// Mean squared distance of every 50th point to its nearest node.
+double quantization_error_mm2(const Graph& graph) {
+  const Room& points = room();
+  double sum_m2 = 0.0;
+  std::size_t num = 0;
+  for (std::size_t i = 0; i < points.x_m.size(); i += 50, ++num) {
+    sum_m2 += nearest_two_linear(graph, {points.x_m[i], points.y_m[i], points.z_m[i]}).first_m2;
+  }
+  return 1e6 * sum_m2 / static_cast<double>(num);
+}
+
 void each_number_of_nodes(benchmark::internal::Benchmark* benchmark) {
   for (const int num_nodes : {500, 1000, 2000, 5000, 20000}) benchmark->Arg(num_nodes);
 }
@@ -124,12 +144,42 @@ void signals(benchmark::State& state, bool linear) {
   state.counters["signals_per_second"] =
       benchmark::Counter(static_cast<double>(num_signals), benchmark::Counter::kIsRate);
   state.counters["nodes"] = loop.growing().graph().num_nodes();
+  if (linear) return;
   const WinnerSearch::Counts& after = loop.growing().search_counts();
   state.counters["linear_share"] = static_cast<double>(after.linear - before.linear) /
                                    static_cast<double>(after.searches - before.searches);
 }
 BENCHMARK_CAPTURE(signals, ddgng, false)->Name("ddgng")->Apply(each_number_of_nodes);
 BENCHMARK_CAPTURE(signals, linear, true)->Name("linear")->Apply(each_number_of_nodes);
+
+void signals_with_removals(benchmark::State& state) {
+  Loop loop = grown_with_removals(static_cast<int>(state.range(0)));
+  const std::int64_t before = loop.growing().counts().removed_by_utility;
+  std::int64_t num_signals = 0;
+  for (auto _ : state) num_signals += loop.run_frame();
+  state.counters["signals_per_second"] =
+      benchmark::Counter(static_cast<double>(num_signals), benchmark::Counter::kIsRate);
+  state.counters["nodes"] = loop.growing().graph().num_nodes();
+  state.counters["removed_per_1000"] =
+      1e3 * static_cast<double>(loop.growing().counts().removed_by_utility - before) /
+      static_cast<double>(num_signals);
+}
+BENCHMARK(signals_with_removals)->Name("ddgng_with_removals")->Apply(each_number_of_nodes);
+
+/// Quantization error after 100 000 equal signals, with cells and with the linear search.
+void quantization(benchmark::State& state) {
+  Loop cells = grown(static_cast<int>(state.range(0)));
+  Loop linear = cells;
+  linear.search_linearly();
+  for (auto _ : state) {
+    for (int frame = 0; frame < 10; ++frame) cells.run_frame();
+  }
+  for (int frame = 0; frame < 10; ++frame) linear.run_frame();
+  const double error_mm2 = quantization_error_mm2(cells.growing().graph());
+  state.counters["error_mm2"] = error_mm2;
+  state.counters["error_to_linear"] = error_mm2 / quantization_error_mm2(linear.growing().graph());
+}
+BENCHMARK(quantization)->Name("quantization")->Apply(each_number_of_nodes)->Iterations(1);
 
 void winner_search(benchmark::State& state) {
   Loop loop(bench_params(static_cast<int>(state.range(0))));

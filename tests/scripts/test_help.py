@@ -90,6 +90,7 @@ class Refusals(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             self.assertIn("gen.cpp is missing", self.refused("bench", "--no-build", "--yardstick", folder))
         self.assertIn("whole number", self.refused("bench", "--no-build", "--repetitions", "0"))
+        self.assertIn("whole number", self.refused("bench", "--no-build", "--latency", "a while"))
 
 
 if __name__ == "__main__":
