@@ -5,6 +5,7 @@ import argparse
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -141,6 +142,7 @@ def advice(figures, was_starved, num_blind):
 
 
 def main():
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C: no process is left behind
     options = arguments()
     try:
         faults = [robot_faults.parse(text) for text in options.fault]
