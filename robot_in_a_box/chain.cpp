@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "robot_in_a_box/chain.h"
 
+#include <chrono>
+
 #include "base/check.h"
 #include "gng_service/service.h"
 #include "ladder_service/service.h"
@@ -11,17 +13,27 @@ namespace robot_in_a_box {
 struct Chain::Member {
   Member(const runtime::ServiceDescription& description, const runtime::Config& config,
          std::shared_ptr<lcm_t> connection)
-      : bus(std::move(connection)),
+      : name(description.name),
+        bus(std::move(connection)),
         health(description.number),
         journal(description.number, description.name) {
     journal.show_from(ladder_msgs::event_t::LEVEL_WARNING);
     service = description.make({bus, config.table(description.name), health, journal});
   }
 
+  void step(const base::Now& now) {
+    using std::chrono::steady_clock;
+    const steady_clock::time_point start = steady_clock::now();
+    service->step(now);
+    busy += steady_clock::now() - start;
+  }
+
+  std::string name;
   runtime::Bus bus;
   runtime::Health health;
   runtime::Journal journal;
   std::unique_ptr<runtime::Service> service;
+  std::chrono::steady_clock::duration busy{};
 };
 
 struct Chain::Recorder {
@@ -85,9 +97,18 @@ void Chain::work(const base::Now& now) {
   // delivered in the next round.
   while (pump_.drain() > 0) {
     for (const auto& member : members_) {
-      if (member != nullptr) member->service->step(now);
+      if (member != nullptr) member->step(now);
     }
   }
+}
+
+double Chain::busy_ms(std::string_view service) const {
+  double sum_ms = 0.0;
+  for (const auto& member : members_) {
+    if (member == nullptr || member->name != service) continue;
+    sum_ms += std::chrono::duration<double, std::milli>(member->busy).count();
+  }
+  return sum_ms;
 }
 
 std::int64_t Chain::num_rejected() const {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/service.h"
@@ -37,6 +38,8 @@ class Chain {
   void kill(const std::string& service);
   /// It is there again and knows nothing.
   void start_anew(const std::string& service);
+  /// How long the steps of a service ("sensor", "gng", "ladder") have taken since the start.
+  double busy_ms(std::string_view service) const;
 
   /// Messages that a service refused, over all causes.
   std::int64_t num_rejected() const;

@@ -18,4 +18,10 @@ ImuSample imu_at_rest(const ImuParams& params, const Eigen::Isometry3d& T_world_
   return sample;
 }
 
+void add_motion(const BodyMotion& motion, const Eigen::Isometry3d& T_world_body,
+                ImuSample& sample) {
+  sample.accelerometer_m_s2 += T_world_body.linear().transpose() * motion.acceleration_m_s2;
+  sample.gyroscope_rad_s += motion.angular_rate_rad_s;
+}
+
 }  // namespace simulator

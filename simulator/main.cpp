@@ -18,6 +18,7 @@
 #include "runtime/bus.h"
 #include "runtime/channels.h"
 #include "simulator/simulation.h"
+#include "simulator/simulation_options.h"
 
 namespace {
 
@@ -63,29 +64,7 @@ std::vector<std::uint8_t> encoded(const simulator::Message& message) {
 /// An exit code when there is nothing to run. Throws std::invalid_argument.
 std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
   CLI::App app("Simulated depth heads and inertial unit before a scene.", "ladder_simulator");
-  simulator::SimulationParams& simulation = arguments.simulation;
-  std::string scene = "plain";
-  std::string layout = "heads_still";
-  std::string depth = "radial";
-  std::vector<int> dead_heads;
-  std::optional<double> diameter_m;
-  app.add_option("--scene", scene, "what stands before the robot; a wrong name lists the kinds");
-  app.add_option("--seed", simulation.scene.seed, "of scene, mounting errors and noise");
-  app.add_option("--distance_m", simulation.scene.distance_m);
-  app.add_option("--yaw_deg", simulation.scene.yaw_deg);
-  app.add_option("--rung_diameter_m", diameter_m);
-  app.add_option("--spacing_m", simulation.scene.spacing_m);
-  app.add_option("--clear_width_m", simulation.scene.clear_width_m);
-  app.add_option("--num_rungs", simulation.scene.num_rungs);
-  app.add_option("--layout", layout, "heads_still or heads_climb");
-  app.add_option("--body_height_m", simulation.body_height_m);
-  app.add_option("--dead_heads", dead_heads, "heads that send nothing")->delimiter(',');
-  app.add_option("--rate_hz", simulation.rate_hz, "of each head");
-  app.add_option("--noise_share", simulation.sensor.noise_share, "sigma / range");
-  app.add_option("--wrap_range_m", simulation.sensor.wrap_range_m, "2.49: single frequency");
-  app.add_option("--extrinsic_sigma_m", simulation.sensor.extrinsic_sigma_m);
-  app.add_option("--extrinsic_sigma_deg", simulation.sensor.extrinsic_sigma_deg);
-  app.add_option("--depth", depth, "radial or z")->check(CLI::IsMember({"radial", "z"}));
+  const simulator::SimulationOptions options(app);
   app.add_option("--seconds", arguments.seconds, "stop after this time");
   app.add_option("--frames", arguments.num_frames, "stop after so many frames of each head");
   app.add_option("--log", arguments.log_path, "write this LCM log instead of publishing");
@@ -97,16 +76,7 @@ std::optional<int> parse(int argc, char** argv, Arguments& arguments) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitArguments;  // 0: help was asked for
   }
-  simulation.scene.kind = simulator::scene_kind_from_string(scene);
-  simulation.scene.rung_diameter_m = diameter_m;
-  simulation.layout = simulator::head_layout_from_string(layout);
-  simulation.sensor.radial = depth == "radial";
-  for (const int head : dead_heads) {
-    if (head < 0 || head >= simulator::kNumHeads) {
-      throw std::invalid_argument("--dead_heads: a head is 0, 1, 2 or 3");
-    }
-    simulation.head_dead[static_cast<std::size_t>(head)] = true;
-  }
+  arguments.simulation = options.params();
   if (!arguments.log_path.empty() && !arguments.seconds && !arguments.num_frames) {
     throw std::invalid_argument("--log needs --frames or --seconds");
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/check.h"
 #include "simulator/scene_builder.h"
 
 namespace simulator {
@@ -52,7 +53,7 @@ std::string_view to_string(SceneKind kind) {
 }
 
 bool is_ladder(SceneKind kind) {
-  return kind < SceneKind::kEmptyRoom;
+  return kind < SceneKind::kEmptyRoom || kind == SceneKind::kLoose;
 }
 
 std::string check(const SceneParams& params) {
@@ -79,6 +80,18 @@ Scene make_scene(const SceneParams& params) {
     build_negative_scene(builder);
   }
   return builder.take();
+}
+
+Scene without_rung(Scene scene, int index) {
+  CHECK(index >= 0 && index < static_cast<int>(scene.rungs.size()), "the scene has this rung");
+  std::erase_if(scene.solids, [index](const Solid& solid) {
+    return solid.part == Part::kRung && solid.part_index == index;
+  });
+  for (Solid& solid : scene.solids) {
+    if (solid.part == Part::kRung && solid.part_index > index) --solid.part_index;
+  }
+  scene.rungs.erase(scene.rungs.begin() + index);
+  return scene;
 }
 
 SceneBuilder::SceneBuilder(const SceneParams& params)

@@ -38,6 +38,7 @@ enum class SceneKind {
   kWindowBars,
   kHandrail,
   kScaffold,
+  kLoose,
 };
 
 struct SceneName {
@@ -46,7 +47,7 @@ struct SceneName {
 };
 
 /// Every kind with the name users type; "normal" is accepted for "plain".
-inline constexpr std::array<SceneName, 22> kSceneNames{{
+inline constexpr std::array<SceneName, 23> kSceneNames{{
     {SceneKind::kPlain, "plain"},
     {SceneKind::kMissing, "missing"},
     {SceneKind::kBent, "bent"},
@@ -69,6 +70,7 @@ inline constexpr std::array<SceneName, 22> kSceneNames{{
     {SceneKind::kWindowBars, "window_bars"},
     {SceneKind::kHandrail, "handrail"},
     {SceneKind::kScaffold, "scaffold"},
+    {SceneKind::kLoose, "loose"},
 }};
 
 /// Throws std::invalid_argument that lists the known kinds.
@@ -86,7 +88,7 @@ struct SceneParams {
   double spacing_m = 0.30;                ///< [0.15, 0.5] from rung to rung along the rails
   double clear_width_m = 0.40;            ///< [0.2, 0.8] between the inner faces of the rails
   int num_rungs = 8;                      ///< [1, 16]
-  std::optional<int> damaged_rung;        ///< of kMissing, kBent, kBroken; none: from the seed
+  std::optional<int> damaged_rung;        ///< of kMissing, kBent, kBroken, kLoose; none: from the seed
 };
 
 /// "" or the violated relation.
@@ -110,7 +112,7 @@ struct Solid {
   double reflectance = 0.5;  ///< 0 = black .. 1 = white
 };
 
-/// The values of truth_t RUNG_*.
+/// The values of truth_t RUNG_*; a loose rung, one end down, counts as bent.
 enum class RungKind : std::uint8_t { kUnknown = 0, kSound = 1, kBent = 2, kStub = 3, kBar = 4 };
 
 struct Rung {
@@ -136,5 +138,8 @@ struct Scene {
 
 /// The same params give the same scene. Throws std::invalid_argument when check(params) objects.
 Scene make_scene(const SceneParams& params);
+
+/// The same scene after somebody took this rung (index into rungs) away.
+Scene without_rung(Scene scene, int index);
 
 }  // namespace simulator

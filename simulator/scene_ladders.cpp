@@ -16,6 +16,7 @@ constexpr double kRailHalfDepth_m = 0.025;  // flat bar 50 x 10 mm, narrow side 
 constexpr double kRailHalfWidth_m = 0.005;
 constexpr double kBentDrop_m = 0.07;  // of the right end
 constexpr double kBentSag_m = 0.05;   // of the middle
+constexpr double kLooseDrop = 0.3;    // of the right end / clear width: 17 deg
 constexpr double kDarkFactor = 0.2;
 
 struct LadderShape {
@@ -23,7 +24,7 @@ struct LadderShape {
   double first_height_m = 0.0;
   double half_width_m = 0.0;  // of the clear width
   double reflectance = 0.5;
-  int damaged = -1;  // which rung is missing, bent or broken
+  int damaged = -1;  // which rung is missing, bent, broken or loose
 };
 
 double lean_deg(SceneKind kind) {
@@ -60,7 +61,7 @@ LadderShape draw_shape(SceneBuilder& builder) {
   const int damaged =
       builder.draw_index(std::min(1, params.num_rungs - 1), std::min(3, params.num_rungs - 1));
   const bool has_damage = params.kind == SceneKind::kMissing || params.kind == SceneKind::kBent ||
-                          params.kind == SceneKind::kBroken;
+                          params.kind == SceneKind::kBroken || params.kind == SceneKind::kLoose;
   if (has_damage) shape.damaged = params.damaged_rung.value_or(damaged);
   if (params.kind == SceneKind::kDark) shape.reflectance *= kDarkFactor;
   return shape;
@@ -119,6 +120,11 @@ void add_rung(SceneBuilder& builder, const LadderShape& shape, int id) {
   if (id == shape.damaged && kind == SceneKind::kBroken) {
     rung.kind = RungKind::kStub;
     rung.end1_m.y() = rung.end0_m.y() - builder.draw(0.4, 0.6) * builder.params().clear_width_m;
+    to = rung.end1_m;
+  }
+  if (id == shape.damaged && kind == SceneKind::kLoose) {  // hangs from the left rail, straight
+    rung.kind = RungKind::kBent;
+    rung.end1_m.z() -= kLooseDrop * builder.params().clear_width_m;
     to = rung.end1_m;
   }
   const int index = builder.true_rung(rung);

@@ -39,6 +39,13 @@ std::string check(const SimulationParams& params) {
   if (const std::string problem = check(params.scene); !problem.empty()) return problem;
   if (const std::string problem = check(params.sensor); !problem.empty()) return problem;
   if (!(params.rate_hz > 0.0 && params.rate_hz <= 60.0)) return "rate_hz must be in (0, 60]";
+  if (!(params.stagger_hz > 0.0 && params.stagger_hz <= 1000.0)) {
+    return "stagger_hz must be in (0, 1000]";
+  }
+  if (const std::string problem = check(params.motion); !problem.empty()) return problem;
+  if (params.removal && !(params.removal->rung >= 0 && params.removal->after_s >= 0.0)) {
+    return "removal needs a rung and a time of at least 0";
+  }
   if (!(params.imu_rate_hz > 0.0 && params.imu_rate_hz <= 1000.0)) {
     return "imu_rate_hz must be in (0, 1000]";
   }
@@ -60,14 +67,21 @@ Simulation::Simulation(const SimulationParams& params)
     heads_.emplace_back(params.sensor, params.layout[static_cast<std::size_t>(i)], i,
                         params.scene.seed);
   }
-  T_world_body_.translation().z() = params.body_height_m;
-  T_odom_world_ = odom_from_world(T_world_body_, heads_[0].T_body_head_nominal());
+  T_world_start_.translation().z() = params.body_height_m;
+  T_odom_world_ = odom_from_world(T_world_start_, heads_[0].T_body_head_nominal());
+  if (params.removal && params.removal->rung >= static_cast<int>(world_.scene().rungs.size())) {
+    throw std::invalid_argument("simulation: the scene has no such rung to remove");
+  }
+}
+
+Eigen::Isometry3d Simulation::T_world_body(std::int64_t utime_us) const {
+  return moved(params_.motion, T_world_start_,
+               1e-6 * static_cast<double>(utime_us - params_.start_utime_us));
 }
 
 std::int64_t Simulation::head_utime_us() const {
   // The heads flash one after the other so that they do not blind each other.
-  constexpr double kStagger_hz = 60.0;
-  const double stagger_hz = std::max(kStagger_hz, kNumHeads * params_.rate_hz);
+  const double stagger_hz = std::max(params_.stagger_hz, kNumHeads * params_.rate_hz);
   return params_.start_utime_us + period_us(round_, params_.rate_hz) +
          period_us(next_head_, stagger_hz);
 }
@@ -96,14 +110,12 @@ const std::vector<Message>& Simulation::advance_to(std::int64_t utime_us) {
 void Simulation::advance_head() {
   const std::int64_t utime = head_utime_us();
   const int head = next_head_;
-  if (head == 0) {
-    visibility_.clear();
-    newest_frame_utime_us_ = 0;
-  }
+  if (head == 0) begin_round(utime);
   if (!params_.head_dead[static_cast<std::size_t>(head)]) {
-    heads_[head].render(world_.model(), world_.state(), T_world_body_,
+    const Eigen::Isometry3d T_world_body_now = T_world_body(utime);
+    heads_[head].render(world_.model(), world_.state(), T_world_body_now,
                         static_cast<std::uint64_t>(round_), images_[head]);
-    visibility_.add({world_.scene(), world_.rung_of_geom()}, heads_[head], T_world_body_,
+    visibility_.add({world_.scene(), world_.rung_of_geom()}, heads_[head], T_world_body_now,
                     images_[head]);
     due_.emplace_back(tof_frame(head, utime));
     newest_frame_utime_us_ = utime;
@@ -115,6 +127,17 @@ void Simulation::advance_head() {
   next_head_ = (head + 1) % kNumHeads;
 }
 
+void Simulation::begin_round(std::int64_t utime) {
+  const double passed_s = 1e-6 * static_cast<double>(utime - params_.start_utime_us);
+  if (params_.removal && !is_removed_ && passed_s >= params_.removal->after_s) {
+    world_ = World(without_rung(world_.scene(), params_.removal->rung));
+    visibility_ = RungVisibility(world_.scene().rungs.size());
+    is_removed_ = true;
+  }
+  visibility_.clear();
+  newest_frame_utime_us_ = 0;
+}
+
 ladder_msgs::tof_frame_t Simulation::tof_frame(int head, std::int64_t utime) const {
   ladder_msgs::tof_frame_t frame = frame_message(heads_[head], params_.sensor, images_[head]);
   frame.utime = utime;
@@ -124,8 +147,13 @@ ladder_msgs::tof_frame_t Simulation::tof_frame(int head, std::int64_t utime) con
 }
 
 ladder_msgs::imu_t Simulation::imu_message() const {
-  const ImuSample sample = imu_at_rest(params_.imu, T_world_body_, ~params_.scene.seed,
-                                       static_cast<std::uint64_t>(imu_index_));
+  const Eigen::Isometry3d T_world_body_now = T_world_body(imu_utime_us());
+  ImuSample sample = imu_at_rest(params_.imu, T_world_body_now, ~params_.scene.seed,
+                                 static_cast<std::uint64_t>(imu_index_));
+  if (params_.motion.any()) {
+    const double t_s = 1e-6 * static_cast<double>(imu_utime_us() - params_.start_utime_us);
+    add_motion(motion_at(params_.motion, T_world_start_, t_s), T_world_body_now, sample);
+  }
   ladder_msgs::imu_t message{};
   message.utime = imu_utime_us();
   message.seq = imu_index_;
@@ -138,7 +166,7 @@ ladder_msgs::imu_t Simulation::imu_message() const {
 
 ladder_msgs::truth_t Simulation::truth_message(std::int64_t utime) const {
   ladder_msgs::truth_t truth =
-      scene_truth(world_.scene(), visibility_, T_odom_world_, T_world_body_);
+      scene_truth(world_.scene(), visibility_, T_odom_world_, T_world_body(utime));
   truth.utime = utime;
   truth.seq = round_;
   return truth;

@@ -53,23 +53,26 @@ std::vector<Pair> admissible_pairs(std::span<const ReportedRung> reported,
   return pairs;
 }
 
-RungErrors errors_of(const Bar& reported, const TrueRung& truth, const Vector3d& robot_m,
+RungErrors errors_of(const ReportedRung& reported, const TrueRung& truth, const Vector3d& robot_m,
                      const MatchParams& params) {
   RungErrors errors;
   const Vector3d axis = direction(truth.bar);
-  const Vector3d offset = off_axis(reported, truth.bar);
+  const Vector3d offset = off_axis(reported.bar, truth.bar);
   Vector3d away = truth.bar.middle_m() - robot_m;
   away.z() = 0.0;
   errors.axis_mm = 1000.0 * offset.norm();
   errors.depth_mm = 1000.0 * offset.dot(away.normalized());
-  const Vector3d reported_axis = direction(reported);
+  if (truth.radius_m > 0.0) {
+    errors.radius_share = std::abs(reported.radius_m - truth.radius_m) / truth.radius_m;
+  }
+  const Vector3d reported_axis = direction(reported.bar);
   errors.angle_deg =
       std::atan2(reported_axis.cross(axis).norm(), std::abs(reported_axis.dot(axis))) * 180.0 /
       std::numbers::pi;
   if (truth.visible < params.min_visible_end) return errors;
   const bool same_way = reported_axis.dot(axis) > 0.0;
-  const Vector3d& first = same_way ? reported.end0_m : reported.end1_m;
-  const Vector3d& second = same_way ? reported.end1_m : reported.end0_m;
+  const Vector3d& first = same_way ? reported.bar.end0_m : reported.bar.end1_m;
+  const Vector3d& second = same_way ? reported.bar.end1_m : reported.bar.end0_m;
   errors.end_mm[0] = 1000.0 * std::abs((first - truth.bar.end0_m).dot(axis));
   errors.end_mm[1] = 1000.0 * std::abs((second - truth.bar.end1_m).dot(axis));
   return errors;
@@ -96,10 +99,11 @@ FrameMatch match(std::span<const ReportedRung> reported, std::span<const TrueRun
     reported_taken[pair.reported] = truth_taken[pair.truth] = true;
     ++result.on_true_rung;
     const TrueRung& rung = truth[pair.truth];
+    result.ids.push_back({reported[pair.reported].id, rung.id});
     if (!countable(rung, params)) continue;
     ++result.found;
     if (rung.straight) {
-      result.errors.push_back(errors_of(reported[pair.reported].bar, rung, robot_m, params));
+      result.errors.push_back(errors_of(reported[pair.reported], rung, robot_m, params));
     }
   }
   for (const TrueRung& rung : truth) result.countable += countable(rung, params) ? 1 : 0;
@@ -109,12 +113,22 @@ FrameMatch match(std::span<const ReportedRung> reported, std::span<const TrueRun
   return result;
 }
 
+bool is_reported(std::span<const ReportedRung> reported, const TrueRung& rung,
+                 const MatchParams& params) {
+  return std::any_of(reported.begin(), reported.end(), [&](const ReportedRung& one) {
+    return one.trusted && one.bar.finite() && admissible(one.bar, rung.bar, params);
+  });
+}
+
 std::vector<ReportedRung> rungs_of(const ladder_msgs::ladder_t& m) {
-  std::vector<ReportedRung> rungs(shortest(m.num_rungs, m.rung_state, m.rung_x0_m, m.rung_y0_m,
-                                           m.rung_z0_m, m.rung_x1_m, m.rung_y1_m, m.rung_z1_m));
+  std::vector<ReportedRung> rungs(shortest(m.num_rungs, m.rung_id, m.rung_state, m.rung_x0_m,
+                                           m.rung_y0_m, m.rung_z0_m, m.rung_x1_m, m.rung_y1_m,
+                                           m.rung_z1_m, m.rung_radius_m));
   for (std::size_t i = 0; i < rungs.size(); ++i) {
     rungs[i].bar = {{m.rung_x0_m[i], m.rung_y0_m[i], m.rung_z0_m[i]},
                     {m.rung_x1_m[i], m.rung_y1_m[i], m.rung_z1_m[i]}};
+    rungs[i].id = m.rung_id[i];
+    rungs[i].radius_m = m.rung_radius_m[i];
     rungs[i].trusted = m.rung_state[i] == ladder_msgs::ladder_t::RUNG_TRUSTED;
   }
   return rungs;
@@ -122,12 +136,15 @@ std::vector<ReportedRung> rungs_of(const ladder_msgs::ladder_t& m) {
 
 std::vector<TrueRung> rungs_of(const ladder_msgs::truth_t& m) {
   using ladder_msgs::truth_t;
-  std::vector<TrueRung> rungs(shortest(m.num_rungs, m.rung_kind, m.rung_x0_m, m.rung_y0_m,
-                                       m.rung_z0_m, m.rung_x1_m, m.rung_y1_m, m.rung_z1_m,
-                                       m.rung_hits, m.rung_visible));
+  std::vector<TrueRung> rungs(shortest(m.num_rungs, m.rung_id, m.rung_kind, m.rung_x0_m,
+                                       m.rung_y0_m, m.rung_z0_m, m.rung_x1_m, m.rung_y1_m,
+                                       m.rung_z1_m, m.rung_radius_m, m.rung_hits, m.rung_visible));
   for (std::size_t i = 0; i < rungs.size(); ++i) {
     rungs[i].bar = {{m.rung_x0_m[i], m.rung_y0_m[i], m.rung_z0_m[i]},
                     {m.rung_x1_m[i], m.rung_y1_m[i], m.rung_z1_m[i]}};
+    rungs[i].id = m.rung_id[i];
+    rungs[i].radius_m = m.rung_radius_m[i];
+    rungs[i].sound = m.rung_kind[i] == truth_t::RUNG_SOUND;
     rungs[i].of_ladder = m.is_ladder == 1 && m.rung_kind[i] != truth_t::RUNG_BAR;
     rungs[i].straight = m.rung_kind[i] != truth_t::RUNG_BENT;
     rungs[i].hits = m.rung_hits[i];

@@ -24,13 +24,18 @@ struct Bar {
 };
 
 struct ReportedRung {
+  int id = 0;
   Bar bar;
+  double radius_m = 0.0;
   bool trusted = false;  ///< RUNG_TRUSTED; else a candidate
 };
 
 struct TrueRung {
+  int id = 0;
   Bar bar;
+  double radius_m = 0.0;
   bool of_ladder = false;  ///< false: a bar that belongs to no ladder
+  bool sound = true;       ///< neither bent nor broken: it may be grasped
   bool straight = true;    ///< not bent: its axis says where the rung is
   int hits = 0;            ///< clean pixels
   double visible = 0.0;    ///< 0..1, share of its length
@@ -50,7 +55,14 @@ struct RungErrors {
   double axis_mm = 0.0;                  ///< reported middle to true axis, at a right angle to it
   double depth_mm = 0.0;                 ///< its part away from the robot, horizontal, signed
   double angle_deg = 0.0;                ///< between the axes
+  double radius_share = 0.0;             ///< |reported - true| / true radius
   std::optional<double> end_mm[2] = {};  ///< along the true axis; none where the ends are not seen
+};
+
+/// A trusted rung and the true one that it is: their ids.
+struct MatchedIds {
+  int reported = 0;
+  int truth = 0;
 };
 
 struct FrameMatch {
@@ -59,6 +71,7 @@ struct FrameMatch {
   int wrong = 0;         ///< trusted rungs that are none: no rung there, twice, not finite
   int on_true_rung = 0;  ///< trusted rungs on a true rung, countable or not
   std::vector<RungErrors> errors;
+  std::vector<MatchedIds> ids;
 };
 
 /// Whether the truth counts this rung.
@@ -68,6 +81,10 @@ bool countable(const TrueRung& rung, const MatchParams& params);
 /// is neither found nor wrong. robot_m: where the robot stands, for the sign of depth.
 FrameMatch match(std::span<const ReportedRung> reported, std::span<const TrueRung> truth,
                  const Eigen::Vector3d& robot_m, const MatchParams& params);
+
+/// Whether a trusted rung is reported where this one is (or was).
+bool is_reported(std::span<const ReportedRung> reported, const TrueRung& rung,
+                 const MatchParams& params);
 
 /// Arrays that are shorter than num_rungs says end the list.
 std::vector<ReportedRung> rungs_of(const ladder_msgs::ladder_t& message);

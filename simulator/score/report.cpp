@@ -98,6 +98,14 @@ void add_truth_keys(Object& object, const Score& score) {
   object.add("end_errors_mm", score.end_errors_mm);
   object.add("frames_to_first_rung", score.frames_to_first_rung);
   object.add("frames_to_all_rungs", score.frames_to_all_rungs);
+  object.add("radius_error_p50", score.radius_error_p50);
+  object.add("radius_error_p95", score.radius_error_p95);
+  object.add("radius_errors", score.radius_errors);
+  object.add("grasps_offered", score.grasps_offered);
+  object.add("unsafe_grasps", score.unsafe_grasps);
+  object.add("identity_switches", score.identity_switches);
+  object.add("rungs_removed", score.rungs_removed);
+  object.add("removals_noticed_s", score.removals_noticed_s);
   object.add("nodes_on_ladder_share", score.nodes_on_ladder_share);
 }
 
@@ -134,6 +142,9 @@ std::string to_json(const Score& score) {
   object.add("bars_m", score.bars_m);
   object.add("latency_ms_p50", score.latency_ms_p50);
   object.add("latency_ms_p99", score.latency_ms_p99);
+  object.add("compute_ms_p50", score.compute_ms_p50);
+  object.add("compute_ms_p95", score.compute_ms_p95);
+  object.add("compute_ms", score.compute_ms);
   object.add("messages", score.messages);
   object.add("messages_lost", sum(score.messages_lost));
   object.add("messages_lost_by_channel", score.messages_lost);
@@ -160,6 +171,10 @@ std::string to_text(const Score& score) {
     text += line("depth error p50 (+ = too far)", score.depth_error_mm_p50, "mm");
     text += line("angle error p50", score.angle_error_deg_p50, "deg");
     text += line("end error p50", score.end_error_mm_p50, "mm");
+    text += line("radius error p50", score.radius_error_p50, "of the radius");
+    text += line("offered grasps (all frames)", score.grasps_offered);
+    text += line("unsafe ones among them", score.unsafe_grasps);
+    text += line("identity switches", score.identity_switches);
     text += line("frames to the first rung", score.frames_to_first_rung);
     text += line("frames to all rungs", score.frames_to_all_rungs);
     text += line("share of nodes on the ladder", score.nodes_on_ladder_share);

@@ -56,7 +56,7 @@ void Scorer::add(const ladder_msgs::truth_t& message) {
 void Scorer::add(const ladder_msgs::ladder_t& message) {
   reports_.push_back({message.utime,
                       message.ladder_state == ladder_msgs::ladder_t::LADDER_CONFIRMED,
-                      rungs_of(message)});
+                      rungs_of(message), offers_of(message)});
 }
 
 void Scorer::depth_frame_received(std::int64_t utime_us, std::int64_t received_us) {
@@ -86,12 +86,21 @@ Score Scorer::result() const {
   score.scene = scene_;
   score.frames = static_cast<int>(reports_.size());
   for (const Report& report : reports_) score.ladders_confirmed += report.confirmed ? 1 : 0;
-  if (score.has_truth) score_frames(score);
+  if (score.has_truth) {
+    score_frames(score);
+    score_identities(score);
+    const std::vector<Gone> gone = find_gone();
+    score_offers(gone, score);
+    score_removals(gone, score);
+  }
   if (!reports_.empty()) score_last_frame(score);
   if (topology_) score_topology(score);
   score.bars_m = bar_heights();
   score.latency_ms_p50 = quantile(latencies_ms_, 0.50);
   score.latency_ms_p99 = quantile(latencies_ms_, 0.99);
+  score.compute_ms = compute_ms_;
+  score.compute_ms_p50 = quantile(compute_ms_, 0.50);
+  score.compute_ms_p95 = quantile(compute_ms_, 0.95);
   return score;
 }
 
@@ -113,6 +122,57 @@ void Scorer::score_frames(Score& score) const {
   score.precision_all_frames = share(found_sum, found_sum + wrong_sum);
 }
 
+void Scorer::score_offers(const std::vector<Gone>& gone, Score& score) const {
+  for (const Report& report : reports_) {
+    std::vector<TrueRung> rungs = truth_at(report.utime_us)->rungs;
+    for (const Gone& one : gone) {
+      const double passed_s = 1e-6 * static_cast<double>(report.utime_us - one.utime_us);
+      if (passed_s >= 0.0 && passed_s <= offer_params_.reaction_s) rungs.push_back(one.rung);
+    }
+    score.grasps_offered += static_cast<int>(report.offers.size());
+    for (const Offer& offer : report.offers) {
+      score.unsafe_grasps += is_safe(offer, rungs, offer_params_) ? 0 : 1;
+    }
+  }
+}
+
+void Scorer::score_identities(Score& score) const {
+  std::map<int, int> reported_of_true;
+  for (const Report& report : reports_) {
+    const Truth& truth = *truth_at(report.utime_us);
+    for (const MatchedIds& ids : match(report.rungs, truth.rungs, truth.robot_m, params_).ids) {
+      const auto [known, is_new] = reported_of_true.try_emplace(ids.truth, ids.reported);
+      if (is_new || known->second == ids.reported) continue;
+      known->second = ids.reported;
+      ++score.identity_switches;
+    }
+  }
+}
+
+std::vector<Scorer::Gone> Scorer::find_gone() const {
+  std::vector<Gone> gone;
+  for (std::size_t i = 1; i < truths_.size(); ++i) {
+    for (const TrueRung& rung : truths_[i - 1].rungs) {
+      const auto same = [&rung](const TrueRung& other) { return other.id == rung.id; };
+      const std::vector<TrueRung>& now = truths_[i].rungs;
+      if (std::none_of(now.begin(), now.end(), same)) gone.push_back({rung, truths_[i].utime_us});
+    }
+  }
+  return gone;
+}
+
+void Scorer::score_removals(const std::vector<Gone>& gone, Score& score) const {
+  score.rungs_removed = static_cast<int>(gone.size());
+  for (const Gone& one : gone) {
+    const auto noticed = std::find_if(reports_.begin(), reports_.end(), [&](const Report& report) {
+      return report.utime_us >= one.utime_us && !is_reported(report.rungs, one.rung, params_);
+    });
+    if (noticed == reports_.end()) continue;
+    score.removals_noticed_s.push_back(1e-6 *
+                                       static_cast<double>(noticed->utime_us - one.utime_us));
+  }
+}
+
 void Scorer::score_last_frame(Score& score) const {
   const Report& report = reports_.back();
   for (const ReportedRung& rung : report.rungs) {
@@ -129,6 +189,7 @@ void Scorer::score_last_frame(Score& score) const {
     score.axis_errors_mm.push_back(errors.axis_mm);
     score.depth_errors_mm.push_back(errors.depth_mm);
     score.angle_errors_deg.push_back(errors.angle_deg);
+    score.radius_errors.push_back(errors.radius_share);
     for (const std::optional<double>& end_mm : errors.end_mm) {
       if (end_mm) score.end_errors_mm.push_back(*end_mm);
     }
@@ -138,6 +199,8 @@ void Scorer::score_last_frame(Score& score) const {
   score.depth_error_mm_p50 = quantile(score.depth_errors_mm, 0.50);
   score.angle_error_deg_p50 = quantile(score.angle_errors_deg, 0.50);
   score.angle_error_deg_p95 = quantile(score.angle_errors_deg, 0.95);
+  score.radius_error_p50 = quantile(score.radius_errors, 0.50);
+  score.radius_error_p95 = quantile(score.radius_errors, 0.95);
   score.end_error_mm_p50 = quantile(score.end_errors_mm, 0.50);
   score.end_error_mm_p95 = quantile(score.end_errors_mm, 0.95);
 }

@@ -2,8 +2,8 @@
 // The metrics of a run from its messages: truth (if any), rungs, topology. Pure: no LCM, no clock.
 //
 // Which frames count: recall, precision, errors, candidates, bars and topology are of the LAST
-// frame of LADDER_RUNGS; *_all_frames, false_ladders, ladders_confirmed and the frames_to_* are
-// over ALL frames. Each frame is compared with the truth nearest in utime.
+// frame of LADDER_RUNGS; *_all_frames, false_ladders, ladders_confirmed, grasps, identities,
+// removals and the frames_to_* are over ALL frames. Each frame is compared with the truth nearest in utime.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +17,7 @@
 #include "ladder_msgs/topology_t.hpp"
 #include "ladder_msgs/truth_t.hpp"
 #include "simulator/score/matching.h"
+#include "simulator/score/offers.h"
 
 namespace simulator {
 
@@ -38,7 +39,14 @@ struct Score {
   std::optional<double> axis_error_mm_p50, axis_error_mm_p95, depth_error_mm_p50;
   std::optional<double> angle_error_deg_p50, angle_error_deg_p95;
   std::optional<double> end_error_mm_p50, end_error_mm_p95;
+  std::vector<double> radius_errors;  ///< |reported - true| / true radius
+  std::optional<double> radius_error_p50, radius_error_p95;
   std::optional<int> frames_to_first_rung, frames_to_all_rungs;  ///< 1 = the first frame
+  int grasps_offered = 0;     ///< feasible intervals and grasps, frame by frame
+  int unsafe_grasps = 0;      ///< of these, not wholly on a sound rung or too near to its ends
+  int identity_switches = 0;  ///< a true rung goes on under another id
+  int rungs_removed = 0;      ///< taken away while in view of the truth
+  std::vector<double> removals_noticed_s;  ///< until none is reported there any more
 
   std::optional<int> nodes, edges, faces;
   std::optional<double> nodes_on_ladder_share;
@@ -47,6 +55,8 @@ struct Score {
   std::optional<std::vector<double>> bars_m;  ///< ascending; none: no floor plane was found
 
   std::optional<double> latency_ms_p50, latency_ms_p99;
+  std::vector<double> compute_ms;  ///< DD-GNG and rungs per cloud; offline runs only
+  std::optional<double> compute_ms_p50, compute_ms_p95;
   std::map<std::string, std::int64_t> messages, messages_lost;  ///< per channel
 };
 
@@ -65,6 +75,9 @@ class Scorer {
   void depth_frame_received(std::int64_t utime_us, std::int64_t received_us);
   void rungs_received(std::int64_t utime_us, std::int64_t received_us);
 
+  /// Offline only: what DD-GNG and the rungs of one cloud took.
+  void computed(double ms) { compute_ms_.push_back(ms); }
+
   /// The sums; messages and messages_lost are for the caller to fill in.
   Score result() const;
 
@@ -80,6 +93,12 @@ class Scorer {
     std::int64_t utime_us = 0;
     bool confirmed = false;
     std::vector<ReportedRung> rungs;
+    std::vector<Offer> offers;
+  };
+  /// A rung that is no longer there, until the report says so as well.
+  struct Gone {
+    TrueRung rung;
+    std::int64_t utime_us = 0;
   };
   struct Arrival {
     std::int64_t utime_us = 0;
@@ -88,17 +107,23 @@ class Scorer {
 
   const Truth* truth_at(std::int64_t utime_us) const;
   void score_frames(Score& score) const;
+  std::vector<Gone> find_gone() const;
+  void score_offers(const std::vector<Gone>& gone, Score& score) const;
+  void score_identities(Score& score) const;
+  void score_removals(const std::vector<Gone>& gone, Score& score) const;
   void score_last_frame(Score& score) const;
   void score_topology(Score& score) const;
   std::optional<std::vector<double>> bar_heights() const;
 
   MatchParams params_;
+  OfferParams offer_params_;
   std::string scene_;
   std::vector<Truth> truths_;
   std::vector<Report> reports_;
   std::optional<ladder_msgs::topology_t> topology_;
   std::deque<Arrival> depth_arrivals_;  ///< the newest few
   std::vector<double> latencies_ms_;
+  std::vector<double> compute_ms_;
 };
 
 }  // namespace simulator

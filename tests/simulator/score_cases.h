@@ -54,6 +54,8 @@ inline ladder_msgs::ladder_t report(const std::vector<Bar>& bars, std::int64_t u
   message.ladder_state =
       bars.empty() ? ladder_msgs::ladder_t::LADDER_NONE : ladder_msgs::ladder_t::LADDER_CONFIRMED;
   for (const Bar& bar : bars) {
+    message.rung_id.push_back(message.num_rungs + 1);
+    message.rung_radius_m.push_back(0.014F);
     message.rung_state.push_back(ladder_msgs::ladder_t::RUNG_TRUSTED);
     message.rung_x0_m.push_back(static_cast<float>(bar.end0_m.x()));
     message.rung_y0_m.push_back(static_cast<float>(bar.end0_m.y()));

@@ -164,7 +164,7 @@ TEST(Simulation, ImuFeelsGravity) {
 // Odom starts at the body, and head 0 looks along its x axis (seen from above).
 TEST(Simulation, OdomFollowsHeadZero) {
   const Simulation simulation(small());
-  const Eigen::Isometry3d T_odom_body = simulation.T_odom_world() * simulation.T_world_body();
+  const Eigen::Isometry3d T_odom_body = simulation.T_odom_world() * simulation.T_world_body(kStart_us);
   EXPECT_LT(T_odom_body.translation().norm(), 1e-12);
   const Eigen::Vector3d ahead =
       (T_odom_body * simulation.head(0).T_body_head_nominal()).linear().col(2);
@@ -225,7 +225,7 @@ TEST(Simulation, HitsAgreeWithBruteForce) {
   const World& world = simulation.world();
   for (int head = 0; head < kNumHeads; ++head) {
     const HeadRenderer& renderer = simulation.head(head);
-    const Eigen::Isometry3d pose = simulation.T_world_body() * renderer.T_body_head_true();
+    const Eigen::Isometry3d pose = simulation.T_world_body(kStart_us) * renderer.T_body_head_true();
     const Eigen::Vector3d origin = pose.translation();
     for (std::size_t i = 0; i < renderer.pinhole().num_pixels(); ++i) {
       if (simulation.image(head).depth_mm[i] == 0) continue;
@@ -274,6 +274,59 @@ TEST(Simulation, FastHeadsStayInOrder) {
     EXPECT_GT(frame.utime, last_us);
     last_us = frame.utime;
   }
+}
+
+// A body that sways comes back after a period; its inertial unit feels what the path says.
+TEST(Motion, SwayIsPeriodicAndFelt) {
+  MotionParams motion;
+  motion.sway_m = 0.03;
+  motion.sway_deg = 2.0;
+  EXPECT_EQ(check(motion), "");
+  const Eigen::Isometry3d start(Eigen::Translation3d(0.0, 0.0, 0.55));
+  EXPECT_TRUE(moved(motion, start, 0.0).isApprox(start));
+  EXPECT_TRUE(moved(motion, start, 2.0).isApprox(start, 1e-9));
+  EXPECT_NEAR((moved(motion, start, 0.5).translation() - start.translation()).norm(), 0.03, 1e-12);
+  const BodyMotion turning_point = motion_at(motion, start, 0.5);
+  EXPECT_NEAR(turning_point.acceleration_m_s2.norm(), 0.03 * 9.8696, 1e-3);
+  EXPECT_NEAR(turning_point.angular_rate_rad_s.norm(), 0.0, 1e-4);
+  EXPECT_NEAR(motion_at(motion, start, 1.0).angular_rate_rad_s.norm(), 0.0349 * 3.1416, 1e-3);
+  motion.sway_hz = 0.0;
+  EXPECT_NE(check(motion), "");
+}
+
+// A climbing body rises, and the truth says so.
+TEST(Motion, TruthFollowsTheBody) {
+  SimulationParams params = small();
+  params.motion.climb_m_s = 0.1;
+  const auto truths = only<truth_t>(run(params, 1'000'000, 50'000));
+  const double rise_m = truths.back().p_odom_body_m[2] - truths.front().p_odom_body_m[2];
+  const double passed_s = 1e-6 * static_cast<double>(truths.back().utime - truths.front().utime);
+  EXPECT_NEAR(rise_m, 0.1 * passed_s, 1e-6);
+}
+
+// A rung that is taken away is gone from truth and images; the others keep their ids.
+TEST(Removal, TakesOneRungAway) {
+  SimulationParams params = small();
+  params.removal = Removal{2, 0.5};
+  const auto truths = only<truth_t>(run(params, 1'000'000, 50'000));
+  EXPECT_EQ(truths.front().num_rungs, 8);
+  ASSERT_EQ(truths.back().num_rungs, 7);
+  EXPECT_GT(truths.front().rung_hits[2], 0);
+  EXPECT_EQ(truths.back().rung_id[1], 1);
+  EXPECT_EQ(truths.back().rung_id[2], 3);
+  EXPECT_EQ(truths.back().rung_z0_m[2], truths.front().rung_z0_m[3]);
+  params.removal = Removal{99, 0.5};
+  EXPECT_THROW(Simulation{params}, std::invalid_argument);
+}
+
+// Heads may follow each other more slowly than by default.
+TEST(Simulation, StaggerIsAParameter) {
+  SimulationParams params = small();
+  params.rate_hz = 10.0;
+  params.stagger_hz = 40.0;
+  const auto frames = only<tof_frame_t>(run(params, 99'000, 1'000));
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_EQ(frames[3].utime - frames[0].utime, 75'000);
 }
 
 }  // namespace
