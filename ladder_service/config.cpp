@@ -47,10 +47,12 @@ void read(ConfigTable table, ladder::LadderTestParams& params) {
   table.read("attach_m", params.attach_m);
   table.read("attach_far_factor", params.attach_far_factor);
   table.read("rail_overrun_m", params.rail_overrun_m);
+  table.read("rail_unseen_m", params.rail_unseen_m);
   table.read("rung_overrun_m", params.rung_overrun_m);
   table.read("reach_rail_m", params.reach_rail_m);
   table.read("half_score", params.half_score);
   table.read("min_whole_rungs", params.min_whole_rungs);
+  table.read("min_partial_rungs", params.min_partial_rungs);
   table.read("min_joint_distance_m", params.min_joint_distance_m);
   table.read("frame_min_spacing_m", params.frame_min_spacing_m);
   table.read("frame_max_spacing_m", params.frame_max_spacing_m);
@@ -82,7 +84,7 @@ void read(ConfigTable table, ladder::MeasureParams& params) {
   table.read("rail_half_width_m", params.rail_half_width_m);
   table.read("rail_width_switch_m", params.rail_width_switch_m);
   table.read("prior_radius_m", params.prior_radius_m);
-  table.read("radius_switch_m", params.radius_switch_m);
+  table.read("radius_alike", params.radius_alike);
   table.read("head_min_weight", params.head_min_weight);
   table.read("head_min_share", params.head_min_share);
   table.read("head_linearity", params.head_linearity);
@@ -92,6 +94,23 @@ void read(ConfigTable table, ladder::MeasureParams& params) {
   table.read("sag_flag_m", params.sag_flag_m);
   table.read("bent_flag_tan", params.bent_flag_tan);
   table.read("tilt_flag_sin", params.tilt_flag_sin);
+}
+
+void read(ConfigTable table, ladder::AlignParams& params) {
+  table.read("enabled", params.enabled);
+  table.read("sigma_shift_m", params.sigma_shift_m);
+  table.read("sigma_turn_rad", params.sigma_turn_rad);
+  table.read("sigma_point_m", params.sigma_point_m);
+  table.read("points_per_plane", params.points_per_plane);
+  table.read("points_per_bar", params.points_per_bar);
+  table.read("min_weight", params.min_weight);
+  table.read("min_nodes", params.min_nodes);
+  table.read("max_planes", params.max_planes);
+  table.read("gain", params.gain);
+  table.read("begin_misfit_m", params.begin_misfit_m);
+  table.read("end_misfit_m", params.end_misfit_m);
+  table.read("max_shift_m", params.max_shift_m);
+  table.read("max_turn_rad", params.max_turn_rad);
 }
 
 void read(ConfigTable table, ladder::TrackParams& params) {
@@ -160,6 +179,7 @@ ladder::LadderParams read_params(ConfigTable table) {
   read(table.table("bar"), params.bar);
   read(table.table("test"), params.test);
   read(table.table("measure"), params.measure);
+  read(table.table("align"), params.align);
   read(table.table("track"), params.track);
   read(table.table("affordance"), params.affordance);
   read(table.table("paper"), params.paper);

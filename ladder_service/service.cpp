@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ladder_service/service.h"
 
+#include <string>
+
 #include "ladder/ladder.h"
 #include "ladder_msgs/health_t.hpp"
 #include "ladder_service/config.h"
@@ -43,6 +45,7 @@ class LadderService final : public runtime::Service {
       to_node_cloud(*topology, nodes_);
       estimate = &tracker_.update(nodes_);
     }
+    report_heads();
     const runtime::StageTimer timer(context_.health, kPublish);
     to_message(*estimate, *topology, message_);
     context_.bus.publish(channels::kRungs, message_);
@@ -50,6 +53,19 @@ class LadderService final : public runtime::Service {
   }
 
  private:
+  /// Said once; health stays degraded while it is so.
+  void report_heads() {
+    const ladder::HeadFit fit = tracker_.head_fit();
+    if (fit.is_correcting) context_.health.set_state(health_t::STATE_DEGRADED);
+    if (fit.is_correcting && !heads_told_) {
+      context_.journal.warning("heads disagree by " +
+                               std::to_string(static_cast<int>(1e3 * fit.misfit_m + 0.5)) +
+                               " mm on what they see: their mounting differs from the configured "
+                               "one; corrected as far as it shows, please run scripts/calibrate");
+    }
+    heads_told_ = fit.is_correcting;
+  }
+
   runtime::ServiceContext context_;
   runtime::Mailbox<ladder_msgs::topology_t>& topologies_;
   ladder::LadderTracker tracker_;
@@ -57,6 +73,7 @@ class LadderService final : public runtime::Service {
   runtime::RecordingWatch recording_;
   ladder_msgs::ladder_t message_{};
   std::int64_t last_topology_us_ = 0;
+  bool heads_told_ = false;
 };
 
 }  // namespace

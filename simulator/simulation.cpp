@@ -22,9 +22,10 @@ std::int64_t period_us(std::int64_t index, double rate_hz) {
   return static_cast<std::int64_t>(std::floor(static_cast<double>(index) * 1e6 / rate_hz + 0.5));
 }
 
+/// `ahead_body`: where head 0 looks, the body's own x when that head is silent.
 Eigen::Isometry3d odom_from_world(const Eigen::Isometry3d& T_world_body,
-                                  const Eigen::Isometry3d& T_body_head0) {
-  Eigen::Vector3d ahead = (T_world_body * T_body_head0).linear().col(2);
+                                  const Eigen::Vector3d& ahead_body) {
+  Eigen::Vector3d ahead = T_world_body.linear() * ahead_body;
   ahead.z() = 0.0;
   Eigen::Isometry3d T_world_odom = Eigen::Isometry3d::Identity();
   T_world_odom.translation() = T_world_body.translation();
@@ -68,7 +69,10 @@ Simulation::Simulation(const SimulationParams& params)
                         params.scene.seed);
   }
   T_world_start_.translation().z() = params.body_height_m;
-  T_odom_world_ = odom_from_world(T_world_start_, heads_[0].T_body_head_nominal());
+  const Eigen::Vector3d ahead_body = params.head_dead[0]
+                                         ? Eigen::Vector3d(Eigen::Vector3d::UnitX())
+                                         : heads_[0].T_body_head_nominal().linear().col(2);
+  T_odom_world_ = odom_from_world(T_world_start_, ahead_body);
   if (params.removal && params.removal->rung >= static_cast<int>(world_.scene().rungs.size())) {
     throw std::invalid_argument("simulation: the scene has no such rung to remove");
   }

@@ -7,16 +7,23 @@
 namespace ladder {
 
 BarDetector::BarDetector(const LadderParams& params)
-    : params_(params), nodes_(params), search_(params), test_(params), measurement_(params) {
+    : params_(params),
+      alignment_(params),
+      nodes_(params),
+      search_(params),
+      test_(params),
+      measurement_(params) {
   found_.bars.reserve(params.max_bars);
   found_.rails.reserve(params.max_bars);
   used_.reserve(params.max_bars);
   deep_.reserve(params.max_bars);
+  radii_.reserve(params.max_bars);
 }
 
-const Detections& BarDetector::detect(const NodeCloud& cloud) {
+const Detections& BarDetector::detect(const NodeCloud& seen) {
   found_.bars.clear();
   found_.rails.clear();
+  const NodeCloud& cloud = alignment_.correct(seen);
   nodes_.gather(cloud);
   const Eigen::Vector3d body_m = cloud.body_position_m.cast<double>();
   const BarSet& bars = search_.search(nodes_, body_m);
@@ -26,25 +33,33 @@ const Detections& BarDetector::detect(const NodeCloud& cloud) {
   if (ladder.found()) measure_ladder(cloud, bars, ladder);
   for (int i = 0; i < static_cast<int>(bars.rails.size()); ++i) {
     if (found_.is_ladder && (i == ladder.left || i == ladder.right)) continue;
-    found_.rails.push_back(measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i]));
+    found_.rails.push_back(measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i], {}));
   }
   measure_others(cloud, bars);
+  alignment_.learn(cloud, nodes_, bars);
   return found_;
 }
 
 void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
                                  const LadderHypothesis& ladder) {
-  const MeasuredRail left =
-      measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[ladder.left]);
-  const MeasuredRail right =
-      measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[ladder.right]);
+  const BarFrame frame{cloud, nodes_, bars};
+  const RailView view = measurement_.rail_view(frame, ladder);
+  const Bar& left_bar = bars.rails[ladder.left];
+  const Bar& right_bar = bars.rails[ladder.right];
+  MeasuredRail left = measurement_.measure_rail(frame, left_bar, view);
+  MeasuredRail right = measurement_.measure_rail(frame, right_bar, view);
+  // Rails are parallel.
+  const Eigen::Vector3d along =
+      left_bar.support() * left.axis.direction + right_bar.support() * right.axis.direction;
+  left.axis.direction = right.axis.direction = unit(along, left.axis.direction);
   found_.rails.assign({left, right});
   for (const Joint& joint : ladder.joints) {
-    auto bar = measurement_.measure({cloud, nodes_, bars}, joint.bar, {&left, &right});
+    auto bar = measurement_.measure(frame, joint.bar, {&left, &right});
     if (!bar) continue;
     bar->on_ladder = true;
     found_.bars.push_back(*bar);
   }
+  push_back_together();
   join_halves();
   drop_short_stubs();
   if (is_deep()) {
@@ -56,6 +71,31 @@ void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
   found_.is_ladder = true;
   for (const Joint& joint : ladder.joints) used_[joint.bar] = 1;
   keep_one_per_level();
+}
+
+// The rungs of a ladder are alike: the median of their radii, by weight, is better known than each.
+void BarDetector::push_back_together() {
+  std::vector<MeasuredBar>& bars = found_.bars;
+  if (bars.empty()) return;
+  radii_.clear();
+  double weight = 0.0;
+  for (const MeasuredBar& bar : bars) {
+    radii_.emplace_back(bar.radius_m, bar.weight);
+    weight += bar.weight;
+  }
+  std::sort(radii_.begin(), radii_.end());
+  std::size_t median = 0;
+  for (double below = radii_[0].second; below < 0.5 * weight && median + 1 < radii_.size();) {
+    below += radii_[++median].second;
+  }
+  const double radius_m = radii_[median].first;
+  for (MeasuredBar& bar : bars) {
+    // One of another kind keeps its own.
+    const bool is_alike =
+        std::abs(bar.radius_m - radius_m) <= params_.measure.radius_alike * radius_m;
+    if (is_alike) bar.radius_m = radius_m;
+    BarMeasurement::push_back(bar.radius_m, bar);
+  }
 }
 
 void BarDetector::join_halves() {
@@ -119,8 +159,11 @@ void BarDetector::keep_one_per_level() {
 void BarDetector::measure_others(const NodeCloud& cloud, const BarSet& bars) {
   for (int i = 0; i < static_cast<int>(bars.rungs.size()); ++i) {
     if (used_[i] || static_cast<int>(found_.bars.size()) >= params_.max_bars) continue;
-    const auto bar = measurement_.measure({cloud, nodes_, bars}, i, {});
-    if (bar) found_.bars.push_back(*bar);
+    auto bar = measurement_.measure({cloud, nodes_, bars}, i, {});
+    if (!bar) continue;
+    // The front of a board is flat.
+    if (!bars.rungs[i].wide) BarMeasurement::push_back(bar->radius_m, *bar);
+    found_.bars.push_back(*bar);
   }
 }
 

@@ -3,11 +3,13 @@
 // bars. Bars that belong to no ladder stay in the list, marked as such.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "ladder/bar_measurement.h"
 #include "ladder/bar_nodes.h"
 #include "ladder/bar_search.h"
+#include "ladder/head_alignment.h"
 #include "ladder/ladder_test.h"
 #include "ladder/measured_bar.h"
 
@@ -22,17 +24,21 @@ struct Detections {
 class BarDetector {
  public:
   explicit BarDetector(const LadderParams& params);
-  const Detections& detect(const NodeCloud& cloud);
+  const Detections& detect(const NodeCloud& seen);
+  void reset() { alignment_.reset(); }
+  const HeadAlignment& alignment() const { return alignment_; }
 
  private:
   void measure_ladder(const NodeCloud& cloud, const BarSet& bars, const LadderHypothesis& ladder);
   void measure_others(const NodeCloud& cloud, const BarSet& bars);
+  void push_back_together();
   void join_halves();
   void drop_short_stubs();
   bool is_deep();
   void keep_one_per_level();
 
   LadderParams params_;
+  HeadAlignment alignment_;
   BarNodes nodes_;
   BarSearch search_;
   LadderTest test_;
@@ -40,6 +46,7 @@ class BarDetector {
   Detections found_;
   std::vector<char> used_;
   std::vector<double> deep_;
+  std::vector<std::pair<double, double>> radii_;  ///< with their weights
 };
 
 }  // namespace ladder

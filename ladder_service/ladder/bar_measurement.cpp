@@ -26,11 +26,19 @@ struct BarMeasurement::Fit {
   Eigen::Vector3d height = Eigen::Vector3d::UnitZ();
   double from_m = 0.0;
   double to_m = 0.0;
+  Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();  ///< of the members, head by head if it can
   MeasuredBar out;
-  bool is_board = false;  ///< wide and between no rails: its front is flat
 };
 
 namespace {
+
+void add_heads(const BarFrame& frame, const BarNode& node,
+               std::array<MomentSum, kNumHeads>& heads) {
+  for (int i = 0; i < node.num_moments; ++i) {
+    const HeadMoment& m = frame.cloud.moments[node.first_moment + i];
+    if (m.weight > 0.0F && m.mean_m.allFinite()) heads[m.head].add(to_sum(m));
+  }
+}
 
 double inner_face_m(const Axis& bar, const MeasuredRail& rail, double inwards) {
   return nearest(bar, rail.axis).t + inwards * rail.half_width_m;
@@ -38,8 +46,8 @@ double inner_face_m(const Axis& bar, const MeasuredRail& rail, double inwards) {
 
 /// A head's own offset does not turn its lines: the covariances within the heads, added up, give
 /// the direction free of the differences between heads.
-PrincipalAxis direction_within_heads(const std::array<MomentSum, kNumHeads>& heads,
-                                     const MeasureParams& params, double& weight) {
+Eigen::Matrix3d spread_within_heads(const std::array<MomentSum, kNumHeads>& heads,
+                                    const MeasureParams& params, double& weight) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   weight = 0.0;
   for (const MomentSum& head : heads) {
@@ -48,7 +56,7 @@ PrincipalAxis direction_within_heads(const std::array<MomentSum, kNumHeads>& hea
     weight += head.weight;
   }
   if (weight > 0.0) covariance /= weight;
-  return principal_axis(covariance);
+  return covariance;
 }
 
 }  // namespace
@@ -59,7 +67,6 @@ std::optional<MeasuredBar> BarMeasurement::measure(const BarFrame& frame, int ba
   Fit fit;
   MeasuredBar& out = fit.out;
   out.bar = bar_index;
-  fit.is_board = bar.wide && rails.left == nullptr && rails.right == nullptr;
   if (!refit(frame, bar, rails, fit)) return std::nullopt;
   const Eigen::Vector3d ray = unit(fit.axis.origin_m - bar.eye_m, Eigen::Vector3d::UnitX());
   const Eigen::Vector3d& d = fit.axis.direction;
@@ -77,22 +84,65 @@ std::optional<MeasuredBar> BarMeasurement::measure(const BarFrame& frame, int ba
   return out;
 }
 
-MeasuredRail BarMeasurement::measure_rail(const BarFrame& frame, const Bar& rail) const {
+// One head sees the lower half of a rail, another the upper: their offset would tilt it.
+Eigen::Vector3d BarMeasurement::rail_direction(
+    const Bar& rail, const std::array<MomentSum, kNumHeads>& heads) const {
+  const MeasureParams& p = params_.measure;
+  double weight = 0.0;
+  const PrincipalAxis within = principal_axis(spread_within_heads(heads, p, weight));
+  if (weight <= p.head_min_share * rail.sum.weight || !within.is_linear(p.head_linearity)) {
+    return rail.axis.direction;
+  }
+  const bool is_upwards = within.direction.dot(rail.axis.direction) >= 0.0;
+  return is_upwards ? within.direction : Eigen::Vector3d(-within.direction);
+}
+
+// The fronts of bars are nearly flat: what varies along the view is noise. A flat rail's side is
+// seen with its front, so width counts along the rungs, not across the view.
+RailView BarMeasurement::rail_view(const BarFrame& frame, const LadderHypothesis& ladder) const {
+  constexpr double kMinSine2 = 0.25;  // between view and bar
+  double weight = 0.0;
+  RailView view;
+  for (const Joint& joint : ladder.joints) {
+    const Bar& bar = frame.bars.rungs[joint.bar];
+    const Eigen::Vector3d ray = unit(bar.axis.origin_m - bar.eye_m, Eigen::Vector3d::UnitX());
+    const Eigen::Vector3d depth = ray - ray.dot(bar.axis.direction) * bar.axis.direction;
+    const double sine2 = depth.squaredNorm();
+    if (sine2 < kMinSine2) continue;
+    // Of the range's variance, sine^2 shows in the unit vector's direction.
+    view.noise_m2 += bar.sum.weight * depth.dot(bar.sum.covariance() * depth) / (sine2 * sine2);
+    weight += bar.sum.weight;
+  }
+  view.noise_m2 = weight > 0.0 ? std::max(0.0, view.noise_m2 / weight) : 0.0;
+  const Axis& left = frame.bars.rails[ladder.left].axis;
+  const Eigen::Vector3d across = left.across(frame.bars.rails[ladder.right].axis.origin_m);
+  view.across = unit(across, Eigen::Vector3d::Zero());
+  return view;
+}
+
+MeasuredRail BarMeasurement::measure_rail(const BarFrame& frame, const Bar& rail,
+                                          const RailView& rail_view) const {
   MeasuredRail out{rail.axis, rail.from_m, rail.to_m, params_.measure.rail_half_width_m};
-  // Visible half width from the spread across the view, away from where rungs are joined.
+  // Visible half width from the spread, away from where rungs are joined.
   MomentSum sum;
+  std::array<MomentSum, kNumHeads> heads;
   for (const int k : frame.bars.members_of(rail)) {
     const bool joined =
         std::any_of(frame.bars.rungs.begin(), frame.bars.rungs.end(), [&](const Bar& rung) {
           return rung.axis.distance(frame.nodes.position_m(k)) < params_.test.on_rung_m;
         });
     if (!joined) sum.add(frame.nodes[k].sum);
+    add_heads(frame, frame.nodes[k], heads);
   }
+  out.axis.direction = rail_direction(rail, heads);
   if (sum.weight < params_.measure.min_weight) return out;
   const Eigen::Vector3d view = rail.axis.origin_m - rail.eye_m;
-  const Eigen::Vector3d side = unit(view.cross(rail.axis.direction), Eigen::Vector3d::UnitY());
+  Eigen::Vector3d side = unit(view.cross(rail.axis.direction), Eigen::Vector3d::UnitY());
+  if (rail_view.across.squaredNorm() > 0.0) side = rail_view.across;
   const double range_m = std::sqrt(view.squaredNorm());
-  const double variance_m2 = std::max(0.0, side.dot(sum.covariance() * side));
+  const double along_view = side.dot(view) / range_m;
+  const double noise_m2 = along_view * along_view * rail_view.noise_m2;
+  const double variance_m2 = std::max(0.0, side.dot(sum.covariance() * side) - noise_m2);
   const double half_m = std::sqrt(3.0 * variance_m2) - 0.5 * range_m * frame.cloud.pixel_pitch_rad;
   if (half_m > params_.measure.rail_width_switch_m) out.half_width_m = half_m;
   return out;
@@ -110,17 +160,17 @@ bool BarMeasurement::refit(const BarFrame& frame, const Bar& bar, const Between&
     const double t = bar.axis.along(frame.nodes.position_m(k));
     if (t < from_m || t > to_m) continue;
     fit.sum.add(frame.nodes[k].sum);
-    for (int i = 0; i < frame.nodes[k].num_moments; ++i) {
-      const HeadMoment& m = frame.cloud.moments[frame.nodes[k].first_moment + i];
-      if (m.weight > 0.0F && m.mean_m.allFinite()) heads[m.head].add(to_sum(m));
-    }
+    add_heads(frame, frame.nodes[k], heads);
   }
   if (fit.sum.weight < p.min_weight) return false;
-  PrincipalAxis spread = principal_axis(fit.sum.covariance());
+  fit.spread_m2 = fit.sum.covariance();
+  PrincipalAxis spread = principal_axis(fit.spread_m2);
   double weight_in_heads = 0.0;
-  const PrincipalAxis within = direction_within_heads(heads, p, weight_in_heads);
+  const Eigen::Matrix3d within_m2 = spread_within_heads(heads, p, weight_in_heads);
+  const PrincipalAxis within = principal_axis(within_m2);
   if (weight_in_heads > p.head_min_share * fit.sum.weight && within.is_linear(p.head_linearity)) {
     spread.direction = within.direction;
+    fit.spread_m2 = within_m2;
   }
   if (spread.direction.dot(bar.axis.direction) < 0.0) spread.direction = -spread.direction;
   fit.axis = {fit.sum.mean(), spread.direction};
@@ -151,21 +201,25 @@ void BarMeasurement::find_ends(const BarFrame& frame, const Bar& bar, const Betw
   }
 }
 
-void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const {
-  const MeasureParams& p = params_.measure;
+// Points spread evenly over the visible height 2 h have the variance h^2 / 3. Pixels that touch an
+// edge are lost, half of one at either side.
+void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) {
   const double range_m = std::sqrt((fit.axis.origin_m - bar.eye_m).squaredNorm());
-  const double half_pixel_m = 0.5 * range_m * frame.cloud.pixel_pitch_rad;
-  const double variance_m2 = std::max(0.0, fit.height.dot(fit.sum.covariance() * fit.height));
-  const double estimate_m = std::sqrt(3.0 * variance_m2) + half_pixel_m;
-  const double radius_m = estimate_m < p.radius_switch_m ? p.prior_radius_m : estimate_m;
-  // Pixels that touch the edge are lost: only so much of the height is seen.
-  constexpr double kLeastVisible = 0.3;
-  const double visible_m = std::clamp(radius_m - half_pixel_m, kLeastVisible * radius_m, radius_m);
-  const double depth_m = fit.is_board ? 0.0 : mean_chord_depth_m(radius_m, visible_m);
-  const Eigen::Vector3d push_back = depth_m * fit.depth;
-  fit.out.radius_m = estimate_m;
-  fit.out.end0_m = fit.axis.at(fit.from_m) + push_back;
-  fit.out.end1_m = fit.axis.at(fit.to_m) + push_back;
+  const double variance_m2 = std::max(0.0, fit.height.dot(fit.spread_m2 * fit.height));
+  fit.out.half_pixel_m = 0.5 * range_m * frame.cloud.pixel_pitch_rad;
+  fit.out.radius_m = std::sqrt(3.0 * variance_m2) + fit.out.half_pixel_m;
+  fit.out.depth = fit.depth;
+  fit.out.end0_m = fit.axis.at(fit.from_m);
+  fit.out.end1_m = fit.axis.at(fit.to_m);
+}
+
+void BarMeasurement::push_back(double radius_m, MeasuredBar& bar) {
+  constexpr double kLeastVisible = 0.3;  // of the radius
+  const double visible_m =
+      std::clamp(radius_m - bar.half_pixel_m, kLeastVisible * radius_m, radius_m);
+  const Eigen::Vector3d by_m = mean_chord_depth_m(radius_m, visible_m) * bar.depth;
+  bar.end0_m += by_m;
+  bar.end1_m += by_m;
 }
 
 void BarMeasurement::find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const {

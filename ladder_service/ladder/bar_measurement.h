@@ -3,9 +3,11 @@
 // from the visible front to the axis, ends, damage.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "ladder/bar.h"
+#include "ladder/ladder_test.h"
 #include "ladder/measured_bar.h"
 #include "ladder/node_cloud.h"
 #include "ladder/params.h"
@@ -16,6 +18,13 @@ namespace ladder {
 struct Between {
   const MeasuredRail* left = nullptr;
   const MeasuredRail* right = nullptr;
+};
+
+/// How a rail's width is measured: in this direction, and how much of the variance along the view
+/// is the heads' noise.
+struct RailView {
+  Eigen::Vector3d across = Eigen::Vector3d::Zero();  ///< unit; zero = at a right angle to the view
+  double noise_m2 = 0.0;
 };
 
 /// What one frame gave so far.
@@ -29,16 +38,22 @@ class BarMeasurement {
  public:
   explicit BarMeasurement(const LadderParams& params) : params_(params) {}
 
-  /// Nothing when too few points remain or it touches neither rail.
+  /// Its visible front. Nothing when too few points remain or it touches neither rail.
   std::optional<MeasuredBar> measure(const BarFrame& frame, int bar_index,
                                      const Between& rails) const;
-  MeasuredRail measure_rail(const BarFrame& frame, const Bar& rail) const;
+  MeasuredRail measure_rail(const BarFrame& frame, const Bar& rail, const RailView& view) const;
+  /// From the visible front of a round bar to its axis.
+  static void push_back(double radius_m, MeasuredBar& bar);
+  /// How rails are seen between which these bars lie.
+  RailView rail_view(const BarFrame& frame, const LadderHypothesis& ladder) const;
 
  private:
   struct Fit;
   bool refit(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
+  Eigen::Vector3d rail_direction(const Bar& rail,
+                                 const std::array<MomentSum, kNumHeads>& heads) const;
   void find_ends(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
-  void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const;
+  static void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit);
   void find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const;
   double weight_behind(const BarNodes& nodes, const Fit& fit) const;
   void mark_stretches(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;

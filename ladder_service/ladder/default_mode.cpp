@@ -13,6 +13,7 @@ DefaultMode::DefaultMode(const LadderParams& params)
 }
 
 void DefaultMode::reset() {
+  detector_.reset();
   tracker_.reset();
   confirmation_.reset();
 }

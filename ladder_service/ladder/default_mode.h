@@ -22,6 +22,7 @@ class DefaultMode {
   void update(const NodeCloud& cloud, LadderEstimate& estimate, std::vector<RungSurface>& surfaces,
               std::vector<RailLine>& rails);
   void reset();
+  const HeadAlignment& alignment() const { return detector_.alignment(); }
 
  private:
   bool is_published(const BarTrack& track) const;

@@ -61,6 +61,12 @@ void LadderTracker::reset() {
   modes_->estimate.grasps.clear();
 }
 
+HeadFit LadderTracker::head_fit() const {
+  if (!modes_->default_mode) return {};
+  const HeadAlignment& alignment = modes_->default_mode->alignment();
+  return {alignment.misfit_m(), alignment.is_correcting()};
+}
+
 const LadderEstimate& LadderTracker::update(const NodeCloud& cloud) {
   Modes& m = *modes_;
   if (m.last_sequence == cloud.sequence) return m.estimate;

@@ -12,6 +12,12 @@
 
 namespace ladder {
 
+/// How well the heads agree (head_alignment.h).
+struct HeadFit {
+  double misfit_m = 0.0;       ///< without corrections
+  bool is_correcting = false;  ///< they sit elsewhere than configured
+};
+
 class LadderTracker {
  public:
   /// check(params) must be "".
@@ -24,6 +30,9 @@ class LadderTracker {
   /// changes nothing; an inconsistent cloud counts as an empty one. The estimate stands until the
   /// next call.
   const LadderEstimate& update(const NodeCloud& cloud);
+
+  /// What the default mode thinks of the heads' mounting; nothing else ever corrects.
+  HeadFit head_fit() const;
 
   /// Forgets all rungs: a new recording, or a jump of the robot's pose.
   void reset();

@@ -29,10 +29,7 @@ const LadderHypothesis& LadderTest::find(const BarNodes& nodes, const BarSet& ba
       trial_.right = i_left ? j : i;
       if (!are_rails(bars.rails[trial_.left], bars.rails[trial_.right])) continue;
       collect_joints(bars);
-      const auto num_whole = std::count_if(trial_.joints.begin(), trial_.joints.end(),
-                                           [](const Joint& x) { return x.is_whole(); });
-      if (num_whole < params_.min_whole_rungs) continue;
-      if (num_regular_steps() < params_.min_whole_rungs - 1) continue;
+      if (!has_rungs()) continue;
       if (trial_.score > best_.score) std::swap(trial_, best_);
     }
   }
@@ -74,23 +71,39 @@ bool LadderTest::joint(const BarSet& bars, const Bar& bar, Joint& out) const {
   const double farther_m = std::max(at_left.distance_m, at_right.distance_m);
   if (nearer_m > params_.attach_m) return false;
   if (farther_m > params_.attach_m * params_.attach_far_factor) return false;
-  const auto on_rail = [&](const Bar& rail, double u) {
-    return u >= rail.from_m - params_.rail_overrun_m && u <= rail.to_m + params_.rail_overrun_m;
-  };
-  if (!on_rail(left, at_left.u) || !on_rail(right, at_right.u)) return false;
   // A bar that goes on beyond a rail belongs to something else.
   if (bar.from_m < at_left.t - params_.rung_overrun_m) return false;
   if (bar.to_m > at_right.t + params_.rung_overrun_m) return false;
   out.reaches_left = bar.from_m < at_left.t + params_.reach_rail_m;
   out.reaches_right = bar.to_m > at_right.t - params_.reach_rail_m;
   out.height_m = at_left.u;
+  // A rail goes on where nobody looks, beside a rung that reaches only the other one.
+  const auto on_rail = [&](const Bar& rail, double u, bool reaches) {
+    const double overrun_m = reaches ? params_.rail_overrun_m : params_.rail_unseen_m;
+    return u >= rail.from_m - overrun_m && u <= rail.to_m + overrun_m;
+  };
+  if (!on_rail(left, at_left.u, out.reaches_left)) return false;
+  if (!on_rail(right, at_right.u, out.reaches_right)) return false;
   return out.reaches_left || out.reaches_right;
 }
 
-int LadderTest::num_regular_steps() {
+// Whole rungs at whole multiples of a spacing; where few are whole (a head is dead, the ladder is
+// seen from the side), one of them and halves beside it.
+bool LadderTest::has_rungs() {
+  const auto num_joints = static_cast<int>(trial_.joints.size());
+  const auto num_whole = static_cast<int>(std::count_if(
+      trial_.joints.begin(), trial_.joints.end(), [](const Joint& x) { return x.is_whole(); }));
+  if (num_whole >= params_.min_whole_rungs) {
+    return num_regular_steps(true) >= params_.min_whole_rungs - 1;
+  }
+  return num_whole >= 1 && num_joints >= params_.min_partial_rungs &&
+         num_regular_steps(false) >= params_.min_partial_rungs - 1;
+}
+
+int LadderTest::num_regular_steps(bool whole_only) {
   heights_m_.clear();
   for (const Joint& x : trial_.joints) {
-    if (x.is_whole()) heights_m_.push_back(x.height_m);
+    if (x.is_whole() || !whole_only) heights_m_.push_back(x.height_m);
   }
   std::sort(heights_m_.begin(), heights_m_.end());
   double spacing_m = std::numeric_limits<double>::max();

@@ -41,7 +41,8 @@ class LadderTest {
   bool are_rails(const Bar& left, const Bar& right) const;
   bool joint(const BarSet& bars, const Bar& bar, Joint& out) const;
   void collect_joints(const BarSet& bars);
-  int num_regular_steps();
+  bool has_rungs();
+  int num_regular_steps(bool whole_only);
   double hole_ratio(const BarNodes& nodes, const BarSet& bars) const;
 
   LadderTestParams params_;

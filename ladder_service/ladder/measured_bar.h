@@ -18,10 +18,12 @@ using Stretches = std::bitset<kNumStretches>;
 void mark(Stretches& stretches, double from_m, double to_m, double length_m);
 
 struct MeasuredBar {
-  Eigen::Vector3d end0_m = Eigen::Vector3d::Zero();  ///< axis, pushed back by the radius
+  Eigen::Vector3d end0_m = Eigen::Vector3d::Zero();  ///< visible front, then axis (push_back)
   Eigen::Vector3d end1_m = Eigen::Vector3d::Zero();
-  double weight = 0.0;    ///< points
-  double radius_m = 0.0;  ///< half the visible height
+  Eigen::Vector3d depth = Eigen::Vector3d::UnitX();  ///< unit, from the front towards the axis
+  double weight = 0.0;                               ///< points
+  double radius_m = 0.0;                             ///< half the height
+  double half_pixel_m = 0.0;  ///< so much of the height is lost at either edge
   double sag_m = 0.0;
   double bend_tan = 0.0;  ///< of the angle between its halves
   double tilt_sin = 0.0;  ///< of the angle off the right angle to the rails

@@ -79,6 +79,8 @@ std::string check_test(const LadderTestParams& p) {
       Relation{in(p.min_width_m, p.max_width_m, 10.0),
                "test.max_width_m must be in min_width_m..10"},
       Relation{p.min_whole_rungs >= 1, "test.min_whole_rungs must be at least 1"},
+      Relation{p.min_partial_rungs >= 2, "test.min_partial_rungs must be at least 2"},
+      Relation{in(0.0, p.rail_unseen_m, 100.0), "test.rail_unseen_m must be in 0..100"},
       Relation{in(0.01, p.min_joint_distance_m, p.frame_max_spacing_m),
                "test.min_joint_distance_m must be in 0.01..frame_max_spacing_m"},
       Relation{in(0.01, p.frame_min_spacing_m, p.frame_max_spacing_m),
@@ -99,7 +101,7 @@ std::string check_test(const LadderTestParams& p) {
 std::string check_measure_and_track(const MeasureParams& m, const TrackParams& t) {
   return first_violated(std::array{
       Relation{in(0.001, m.prior_radius_m, 1.0), "measure.prior_radius_m must be in 0.001..1"},
-      Relation{in(0.0, m.radius_switch_m, 1.0), "measure.radius_switch_m must be in 0..1"},
+      Relation{in(0.0, m.radius_alike, 1e3), "measure.radius_alike must be in 0..1000"},
       Relation{in(1e-6, m.min_weight, 1e9), "measure.min_weight must be in 1e-6..1e9"},
       Relation{in(0.001, m.stub_margin_m, 1.0), "measure.stub_margin_m must be in 0.001..1"},
       Relation{t.max_evidence >= 1, "track.max_evidence must be at least 1"},
@@ -112,6 +114,25 @@ std::string check_measure_and_track(const MeasureParams& m, const TrackParams& t
       Relation{in(1e-3, t.shape_gain, 1.0), "track.shape_gain must be in 0.001..1"},
       Relation{in(0.001, t.gate_across_m, 1.0), "track.gate_across_m must be in 0.001..1"},
       Relation{in(0.001, t.gate_along_m, 10.0), "track.gate_along_m must be in 0.001..10"},
+  });
+}
+
+std::string check_align(const AlignParams& p) {
+  return first_violated(std::array{
+      Relation{in(1e-6, p.sigma_shift_m, 1.0), "align.sigma_shift_m must be in 1e-6..1"},
+      Relation{in(1e-6, p.sigma_turn_rad, 1.0), "align.sigma_turn_rad must be in 1e-6..1"},
+      Relation{in(1e-4, p.sigma_point_m, 1.0), "align.sigma_point_m must be in 1e-4..1"},
+      Relation{in(0.0, p.points_per_plane, 1e6), "align.points_per_plane must be in 0..1e6"},
+      Relation{in(0.0, p.points_per_bar, 1e6), "align.points_per_bar must be in 0..1e6"},
+      Relation{in(1e-6, p.min_weight, 1e9), "align.min_weight must be in 1e-6..1e9"},
+      Relation{in(1.0, p.min_nodes, 1e6), "align.min_nodes must be in 1..1e6"},
+      Relation{p.max_planes >= 1 && p.max_planes <= 1024, "align.max_planes must be in 1..1024"},
+      Relation{in(0.0, p.gain, 1.0), "align.gain must be in 0..1"},
+      Relation{in(0.0, p.begin_misfit_m, 1.0), "align.begin_misfit_m must be in 0..1"},
+      Relation{in(0.0, p.end_misfit_m, p.begin_misfit_m),
+               "align.end_misfit_m must be in 0..begin_misfit_m"},
+      Relation{in(0.0, p.max_shift_m, 0.1), "align.max_shift_m must be in 0..0.1"},
+      Relation{in(0.0, p.max_turn_rad, 0.1), "align.max_turn_rad must be in 0..0.1"},
   });
 }
 
@@ -155,8 +176,8 @@ LadderParams paper_params() {
 std::string check(const LadderParams& params) {
   for (const std::string& violated :
        {check_capacities(params), check_bar(params.bar), check_test(params.test),
-        check_measure_and_track(params.measure, params.track), check_affordance(params.affordance),
-        check_paper(params.paper)}) {
+        check_measure_and_track(params.measure, params.track), check_align(params.align),
+        check_affordance(params.affordance), check_paper(params.paper)}) {
     if (!violated.empty()) return violated;
   }
   return "";

@@ -22,7 +22,7 @@ struct BarParams {
                                         ///< makes the height doubtful (own)
   double seed_linearity = 3.0;      ///< least ratio of the first two variances of a seed (recipe)
   double level_max_dz = 0.42;       ///< |d_z| below: rung (recipe)
-  double upright_min_dz = 0.85;     ///< |d_z| above: rail (recipe)
+  double upright_min_dz = 0.80;     ///< |d_z| above: rail; 0.87 at 60 deg (own)
   double gap_m = 0.08;              ///< a chain ends at a longer gap (recipe)
   int num_refits = 4;               ///< growth and fit alternate so often (recipe)
   double reach_m = 1.5;             ///< a rung candidate ends this far from its seed (own)
@@ -56,10 +56,12 @@ struct LadderTestParams {
   double attach_m = 0.05;          ///< distance of the axes at a joint (recipe)
   double attach_far_factor = 1.6;  ///< ... the worse of the two joints (recipe)
   double rail_overrun_m = 0.15;    ///< joint beyond the seen part of a rail (recipe)
+  double rail_unseen_m = 1.0;      ///< ... of a rail that the bar does not reach (own)
   double rung_overrun_m = 0.08;    ///< a bar running further past a rail is no rung (recipe)
   double reach_rail_m = 0.07;      ///< seen end this near to a rail: reaches it (recipe)
   double half_score = 0.3;         ///< of a bar reaching one rail; a whole one scores 1 (recipe)
   int min_whole_rungs = 2;         ///< per frame (recipe)
+  int min_partial_rungs = 3;       ///< or one whole one among so many that reach a rail (own)
   double min_joint_distance_m = 0.15;  ///< joints nearer to each other are one level (recipe)
   double frame_min_spacing_m = 0.19;   ///< per frame, coarse (recipe)
   double frame_max_spacing_m = 0.45;   ///<
@@ -95,8 +97,8 @@ struct MeasureParams {
   double joint_trim_m = 0.03;          ///< members this near to a rail are left out (recipe)
   double rail_half_width_m = 0.0025;   ///< from the rail's axis to its inner face (recipe)
   double rail_width_switch_m = 0.010;  ///< an estimated half width is used above this (own)
-  double prior_radius_m = 0.014;       ///< (recipe)
-  double radius_switch_m = 0.020;      ///< the estimated radius is used above this (recipe)
+  double prior_radius_m = 0.014;       ///< told in paper mode, which measures none (recipe)
+  double radius_alike = 0.4;           ///< rungs whose radii differ by a smaller share are pooled
   double head_min_weight = 10.0;       ///< a head's covariance counts from here (recipe)
   double head_min_share = 0.8;         ///< ... and such heads must carry this share (recipe)
   double head_linearity = 6.0;         ///< (recipe)
@@ -106,6 +108,24 @@ struct MeasureParams {
   double sag_flag_m = 0.007;           ///< (recipe)
   double bent_flag_tan = 0.1405;       ///< tan 8 deg between the halves (own)
   double tilt_flag_sin = 0.0698;       ///< sin 4 deg off the right angle (recipe)
+};
+
+/// Where the heads sit, learnt while looking (default mode). head_alignment.h.
+struct AlignParams {
+  bool enabled = true;
+  double sigma_shift_m = 0.010;    ///< tolerance of a head's mounting per axis (quality)
+  double sigma_turn_rad = 0.0175;  ///< 1 deg (quality)
+  double sigma_point_m = 0.004;    ///< a node's mean off a true surface: phase wiggle (own)
+  double points_per_plane = 12.0;  ///< a plane counts as so many independent points per head (own)
+  double points_per_bar = 4.0;     ///< a rung or rail likewise (own)
+  double min_weight = 1.0;         ///< points of a head in a node, to be counted (own)
+  double min_nodes = 3.0;          ///< such nodes of a head on a plane or bar (own)
+  int max_planes = 16;             ///< more planes: no correction (own)
+  double gain = 0.15;              ///< share of the way per frame (own)
+  double begin_misfit_m = 0.006;   ///< heads further apart than this are corrected ... (own)
+  double end_misfit_m = 0.0045;    ///< ... until they are nearer than this (own)
+  double max_shift_m = 0.03;       ///< corrections end here (own: 3 sigma)
+  double max_turn_rad = 0.0524;    ///< 3 deg (own)
 };
 
 /// Evidence (default mode).
@@ -128,7 +148,8 @@ struct AffordanceParams {
   double step_m = 0.005;           ///< sampling along the axis (S19)
   double clearance_m = 0.020;      ///< along the rung, from an outlier or another rung (S19)
   double claw_width_m = 0.034;     ///< (physics.md)
-  double claw_margin_m = 0.006;    ///< a stretch stays width + margin away from rails (own)
+  double claw_margin_m = 0.012;    ///< a stretch stays width + margin away from rails, whose place
+                                   ///< is known so well (own)
   double gripper_width_m = 0.040;  ///< least length of an offered stretch (S19: 2 d_clear)
   double outlier_reach_m = 0.05;   ///< a foreign node this near to the axis is attached to it (own)
   double outlier_min_weight = 3.0;  ///< ... when it holds so many points (own)
@@ -176,6 +197,7 @@ struct LadderParams {
   BarParams bar;
   LadderTestParams test;
   MeasureParams measure;
+  AlignParams align;
   TrackParams track;
   AffordanceParams affordance;
   PaperParams paper;

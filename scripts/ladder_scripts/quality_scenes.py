@@ -67,13 +67,15 @@ class Run:
         return " ".join(map(str, self.words))
 
 
-def runs_of(kinds, first_seed, repeats, frames, places=None):
+def runs_of(kinds, first_seed, repeats, frames, places=None, every=1):
     """Every kind at every place of the grid; each place has its own seed."""
     places = places or list(itertools.product(DISTANCES_M, YAWS_DEG))
     found = []
     for name in kinds:
         kind = KINDS[name]
-        for i, (repeat, (distance_m, yaw_deg)) in enumerate(itertools.product(range(repeats), places)):
+        for i, (_, (distance_m, yaw_deg)) in enumerate(itertools.product(range(repeats), places)):
+            if i % every:
+                continue
             words = (*kind.words, *kind.varying[i % len(kind.varying)], f"--distance_m={distance_m}", f"--yaw_deg={yaw_deg}",
                      "--seed", first_seed + i)
             found.append(Run(name, words, kind.frames or frames))

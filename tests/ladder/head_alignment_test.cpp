@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Heads that sit elsewhere than they are said to sit: noticed, corrected, bounded; small errors are
+// left alone.
+#include "ladder/head_alignment.h"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+namespace ladder {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Mounts {
+  HeadCorrections error;  ///< true minus believed, as a correction would say it
+};
+
+Vector3d head_m(int head) {
+  return {0.0, head % 2 == 0 ? 0.03 : -0.03, head < 2 ? 0.02 : -0.02};
+}
+
+void add_point(const Vector3d& true_m, int plane, const Mounts& mounts, NodeCloud& cloud) {
+  const int node = cloud.num_nodes();
+  cloud.id.push_back(node);
+  cloud.x_m.push_back(static_cast<float>(true_m.x()));
+  cloud.y_m.push_back(static_cast<float>(true_m.y()));
+  cloud.z_m.push_back(static_cast<float>(true_m.z()));
+  cloud.node_class.push_back(NodeClass::kUnknown);
+  cloud.plane.push_back(plane);
+  for (int head = 0; head < kNumHeads; ++head) {
+    const HeadCorrection& error = mounts.error[head];
+    HeadMoment m;
+    m.node = node;
+    m.head = head;
+    m.weight = 10.0F;
+    const Vector3d arm_m = true_m - head_m(head);
+    m.mean_m = (true_m - error.turn_rad.cross(arm_m) - error.shift_m).cast<float>();
+    cloud.moments.push_back(m);
+  }
+}
+
+/// A wall ahead, one at the left and a floor, seen by all heads.
+NodeCloud room(const Mounts& mounts) {
+  NodeCloud cloud;
+  cloud.planes = {{Eigen::Vector3f(-1.0F, 0.0F, 0.0F), -1.5F, NodeClass::kWall},
+                  {Eigen::Vector3f(0.0F, -1.0F, 0.0F), -1.0F, NodeClass::kWall},
+                  {Eigen::Vector3f(0.0F, 0.0F, 1.0F), -0.5F, NodeClass::kSafeGround}};
+  for (int head = 0; head < kNumHeads; ++head) {
+    cloud.head_valid[head] = true;
+    cloud.head_position_m[head] = head_m(head).cast<float>();
+  }
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      add_point({1.5, -0.8 + 0.4 * i, -0.4 + 0.3 * j}, 0, mounts, cloud);
+      add_point({0.5 + 0.2 * i, 1.0, -0.4 + 0.3 * j}, 1, mounts, cloud);
+      add_point({0.5 + 0.2 * i, -0.8 + 0.4 * j, -0.5}, 2, mounts, cloud);
+    }
+  }
+  return cloud;
+}
+
+/// Largest distance between two heads' ideas of one node.
+double disagreement_m(const NodeCloud& cloud) {
+  double worst_m = 0.0;
+  for (std::size_t i = 0; i < cloud.moments.size(); i += kNumHeads) {
+    for (int a = 0; a < kNumHeads; ++a) {
+      for (int b = 0; b < a; ++b) {
+        const Eigen::Vector3f off = cloud.moments[i + a].mean_m - cloud.moments[i + b].mean_m;
+        worst_m = std::max(worst_m, static_cast<double>(off.norm()));
+      }
+    }
+  }
+  return worst_m;
+}
+
+NodeCloud after(int num_frames, const Mounts& mounts, HeadAlignment& alignment) {
+  const NodeCloud cloud = room(mounts);
+  const BarSet no_bars;
+  const BarNodes no_nodes{LadderParams{}};
+  for (int frame = 0; frame < num_frames; ++frame) {
+    alignment.learn(alignment.correct(cloud), no_nodes, no_bars);
+  }
+  return alignment.correct(cloud);
+}
+
+Mounts one_wrong(double shift_m, double turn_rad) {
+  Mounts mounts;
+  mounts.error[1] = {Vector3d(turn_rad, -turn_rad, turn_rad), Vector3d(shift_m, shift_m, -shift_m)};
+  return mounts;
+}
+
+// A head 20 mm and 1.4 deg off agrees with the others after ten seconds.
+TEST(HeadAlignment, BringsAHeadBack) {
+  const Mounts mounts = one_wrong(0.02, 0.025);
+  HeadAlignment alignment{LadderParams{}};
+  EXPECT_GT(disagreement_m(room(mounts)), 0.03);
+  EXPECT_LT(disagreement_m(after(150, mounts, alignment)), 0.008);
+  EXPECT_TRUE(alignment.is_correcting());
+  EXPECT_GT(alignment.misfit_m(), 0.006) << "told without the corrections";
+}
+
+// Within the usual tolerance nothing is touched: the same numbers go through.
+TEST(HeadAlignment, SmallErrorsAreLeftAlone) {
+  const Mounts mounts = one_wrong(0.002, 0.002);
+  HeadAlignment alignment{LadderParams{}};
+  const NodeCloud cloud = after(150, mounts, alignment);
+  const NodeCloud untouched = room(mounts);
+  EXPECT_FALSE(alignment.is_correcting());
+  for (std::size_t i = 0; i < cloud.moments.size(); ++i) {
+    EXPECT_EQ(cloud.moments[i].mean_m, untouched.moments[i].mean_m);
+  }
+}
+
+// Corrections never exceed their bounds, whatever the heads say.
+TEST(HeadAlignment, IsBounded) {
+  const LadderParams params;
+  HeadAlignment alignment{params};
+  after(300, one_wrong(0.3, 0.3), alignment);
+  for (const HeadCorrection& correction : alignment.corrections()) {
+    EXPECT_LE(correction.shift_m.norm(), params.align.max_shift_m + 1e-12);
+    EXPECT_LE(correction.turn_rad.norm(), params.align.max_turn_rad + 1e-12);
+  }
+}
+
+// Switched off, it hands on the very cloud it was given.
+TEST(HeadAlignment, OffIsOff) {
+  LadderParams params;
+  params.align.enabled = false;
+  HeadAlignment alignment{params};
+  const NodeCloud cloud = room(one_wrong(0.02, 0.02));
+  EXPECT_EQ(&alignment.correct(cloud), &cloud);
+}
+
+// What is not a number, a head without position, an empty cloud and a single head teach nothing.
+TEST(HeadAlignment, OddCloudsTeachNothing) {
+  HeadAlignment alignment{LadderParams{}};
+  const BarNodes no_nodes{LadderParams{}};
+  const BarSet no_bars;
+  NodeCloud cloud = room(one_wrong(0.02, 0.02));
+  for (HeadMoment& m : cloud.moments) m.mean_m.x() = std::numeric_limits<float>::quiet_NaN();
+  alignment.learn(alignment.correct(cloud), no_nodes, no_bars);
+  alignment.learn(alignment.correct(NodeCloud{}), no_nodes, no_bars);
+  cloud = room(one_wrong(0.02, 0.02));
+  cloud.head_valid = {false, true, false, false};
+  alignment.learn(alignment.correct(cloud), no_nodes, no_bars);
+  EXPECT_EQ(alignment.misfit_m(), 0.0);
+  for (const HeadCorrection& correction : alignment.corrections()) {
+    EXPECT_EQ(correction.shift_m.norm(), 0.0);
+    EXPECT_EQ(correction.turn_rad.norm(), 0.0);
+  }
+}
+
+// reset() forgets.
+TEST(HeadAlignment, ResetForgets) {
+  HeadAlignment alignment{LadderParams{}};
+  after(50, one_wrong(0.02, 0.02), alignment);
+  alignment.reset();
+  EXPECT_FALSE(alignment.is_correcting());
+  EXPECT_EQ(alignment.corrections()[1].shift_m.norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace ladder
