@@ -59,6 +59,8 @@ HeadAlignment::HeadAlignment(const LadderParams& params) : params_(params.align)
   aligned_.moments.reserve(kNumHeads * num_nodes);
   aligned_.planes.reserve(params_.max_planes);
   samples_.reserve(kNumHeads * num_nodes);
+  const auto num_bars = static_cast<std::size_t>(3 * params.max_bars);
+  misfits_m_.reserve(kNumHeads * (2 * num_bars + params_.max_planes));
 }
 
 void HeadAlignment::reset() {
@@ -97,7 +99,7 @@ const NodeCloud& HeadAlignment::correct(const NodeCloud& cloud) {
 void HeadAlignment::learn(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars) {
   if (!params_.enabled) return;
   equations_ = {};
-  misfit_sum_m2_ = num_misfits_ = 0.0;
+  misfits_m_.clear();
   for (int plane = 0; plane < static_cast<int>(cloud.planes.size()); ++plane) {
     sample_plane(cloud, plane);
     const Vector3d normal = cloud.planes[plane].normal.cast<double>();
@@ -165,8 +167,8 @@ void HeadAlignment::add_distances(const NodeCloud& cloud, const Vector3d& normal
   for (int head = 0; head < kNumHeads && num_heads > 1.0; ++head) {
     if (count[head] < params_.min_nodes) continue;
     const double off_m = uncorrected_m[head] / count[head] - uncorrected_mean_m;
-    misfit_sum_m2_ += off_m * off_m * num_heads / (num_heads - 1.0);
-    num_misfits_ += 1.0;
+    if (misfits_m_.size() == misfits_m_.capacity()) continue;
+    misfits_m_.push_back(std::abs(off_m) * std::sqrt(num_heads / (num_heads - 1.0)));
   }
   const double information = num_points / (params_.sigma_point_m * params_.sigma_point_m);
   for (const Sample& sample : samples_) {
@@ -181,10 +183,13 @@ void HeadAlignment::add_distances(const NodeCloud& cloud, const Vector3d& normal
 }
 
 // A phase error bends what one head sees; to explain that by its mounting would spoil a good one.
+// The median: a step taken for a plane, of which each head sees another part, is no misfit of
+// heads.
 void HeadAlignment::follow_misfit() {
-  if (num_misfits_ == 0.0) return;
-  const double now_m = std::sqrt(misfit_sum_m2_ / num_misfits_);
-  misfit_m_ = misfit_m_ == 0.0 ? now_m : misfit_m_ + params_.gain * (now_m - misfit_m_);
+  if (misfits_m_.empty()) return;
+  const auto median = misfits_m_.begin() + static_cast<std::ptrdiff_t>(misfits_m_.size() / 2);
+  std::nth_element(misfits_m_.begin(), median, misfits_m_.end());
+  misfit_m_ += params_.gain * (*median - misfit_m_);
   if (misfit_m_ > params_.begin_misfit_m) is_correcting_ = true;
   if (misfit_m_ < params_.end_misfit_m) is_correcting_ = false;
 }

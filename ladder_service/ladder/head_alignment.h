@@ -65,8 +65,7 @@ class HeadAlignment {
   HeadCorrections corrections_;
   std::array<Equations, kNumHeads> equations_;
   std::vector<Sample> samples_;
-  double misfit_sum_m2_ = 0.0;  ///< of this frame
-  double num_misfits_ = 0.0;
+  std::vector<double> misfits_m_;  ///< of this frame: each head on each surface and bar
   double misfit_m_ = 0.0;
   bool is_correcting_ = false;
   NodeCloud aligned_;

@@ -22,7 +22,7 @@ using ladder::RungState;
 using ladder::RungSurface;
 
 const Eigen::Vector3d kBody_m(0.0, 0.0, 0.5);
-constexpr double kClaw_m = 0.034 + 0.006;
+constexpr double kClaw_m = 0.034 + 0.012;
 
 Rung trusted_rung(double length_m, double z_m) {
   Rung rung;

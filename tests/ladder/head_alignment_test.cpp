@@ -86,15 +86,16 @@ NodeCloud after(int num_frames, const Mounts& mounts, HeadAlignment& alignment) 
   return alignment.correct(cloud);
 }
 
-Mounts one_wrong(double shift_m, double turn_rad) {
+Mounts two_wrong(double shift_m, double turn_rad) {
   Mounts mounts;
+  mounts.error[2] = {Vector3d(-turn_rad, turn_rad, turn_rad), Vector3d(-shift_m, shift_m, shift_m)};
   mounts.error[1] = {Vector3d(turn_rad, -turn_rad, turn_rad), Vector3d(shift_m, shift_m, -shift_m)};
   return mounts;
 }
 
-// A head 20 mm and 1.4 deg off agrees with the others after ten seconds.
-TEST(HeadAlignment, BringsAHeadBack) {
-  const Mounts mounts = one_wrong(0.02, 0.025);
+// Two heads 35 mm and 2.5 deg off agree with the others after ten seconds.
+TEST(HeadAlignment, BringsHeadsBack) {
+  const Mounts mounts = two_wrong(0.02, 0.025);
   HeadAlignment alignment{LadderParams{}};
   EXPECT_GT(disagreement_m(room(mounts)), 0.03);
   EXPECT_LT(disagreement_m(after(150, mounts, alignment)), 0.008);
@@ -104,7 +105,7 @@ TEST(HeadAlignment, BringsAHeadBack) {
 
 // Within the usual tolerance nothing is touched: the same numbers go through.
 TEST(HeadAlignment, SmallErrorsAreLeftAlone) {
-  const Mounts mounts = one_wrong(0.002, 0.002);
+  const Mounts mounts = two_wrong(0.002, 0.002);
   HeadAlignment alignment{LadderParams{}};
   const NodeCloud cloud = after(150, mounts, alignment);
   const NodeCloud untouched = room(mounts);
@@ -118,7 +119,7 @@ TEST(HeadAlignment, SmallErrorsAreLeftAlone) {
 TEST(HeadAlignment, IsBounded) {
   const LadderParams params;
   HeadAlignment alignment{params};
-  after(300, one_wrong(0.3, 0.3), alignment);
+  after(300, two_wrong(0.3, 0.3), alignment);
   for (const HeadCorrection& correction : alignment.corrections()) {
     EXPECT_LE(correction.shift_m.norm(), params.align.max_shift_m + 1e-12);
     EXPECT_LE(correction.turn_rad.norm(), params.align.max_turn_rad + 1e-12);
@@ -130,7 +131,7 @@ TEST(HeadAlignment, OffIsOff) {
   LadderParams params;
   params.align.enabled = false;
   HeadAlignment alignment{params};
-  const NodeCloud cloud = room(one_wrong(0.02, 0.02));
+  const NodeCloud cloud = room(two_wrong(0.02, 0.02));
   EXPECT_EQ(&alignment.correct(cloud), &cloud);
 }
 
@@ -139,11 +140,11 @@ TEST(HeadAlignment, OddCloudsTeachNothing) {
   HeadAlignment alignment{LadderParams{}};
   const BarNodes no_nodes{LadderParams{}};
   const BarSet no_bars;
-  NodeCloud cloud = room(one_wrong(0.02, 0.02));
+  NodeCloud cloud = room(two_wrong(0.02, 0.02));
   for (HeadMoment& m : cloud.moments) m.mean_m.x() = std::numeric_limits<float>::quiet_NaN();
   alignment.learn(alignment.correct(cloud), no_nodes, no_bars);
   alignment.learn(alignment.correct(NodeCloud{}), no_nodes, no_bars);
-  cloud = room(one_wrong(0.02, 0.02));
+  cloud = room(two_wrong(0.02, 0.02));
   cloud.head_valid = {false, true, false, false};
   alignment.learn(alignment.correct(cloud), no_nodes, no_bars);
   EXPECT_EQ(alignment.misfit_m(), 0.0);
@@ -156,7 +157,7 @@ TEST(HeadAlignment, OddCloudsTeachNothing) {
 // reset() forgets.
 TEST(HeadAlignment, ResetForgets) {
   HeadAlignment alignment{LadderParams{}};
-  after(50, one_wrong(0.02, 0.02), alignment);
+  after(50, two_wrong(0.02, 0.02), alignment);
   alignment.reset();
   EXPECT_FALSE(alignment.is_correcting());
   EXPECT_EQ(alignment.corrections()[1].shift_m.norm(), 0.0);
