@@ -43,7 +43,8 @@ class SceneRun {
   simulator::Score run() {
     const std::int64_t start_us = params_.simulation.start_utime_us;
     const auto last_us = static_cast<std::int64_t>(
-        std::floor(1e6 * params_.num_frames / params_.simulation.rate_hz)) - 1;
+                             std::floor(1e6 * params_.num_frames / params_.simulation.rate_hz)) -
+                         1;
     while (simulation_.next_utime_us() <= start_us + last_us) {
       const std::int64_t now_us = simulation_.next_utime_us();
       tell_poses(now_us);
