@@ -20,7 +20,7 @@ struct ImuSample {
 
 /// How a body moves at one moment.
 struct BodyMotion {
-  Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();  ///< world frame
+  Eigen::Vector3d acceleration_m_s2 = Eigen::Vector3d::Zero();   ///< world frame
   Eigen::Vector3d angular_rate_rad_s = Eigen::Vector3d::Zero();  ///< body frame
 };
 
@@ -28,7 +28,6 @@ struct BodyMotion {
 ImuSample imu_at_rest(const ImuParams& params, const Eigen::Isometry3d& T_world_body,
                       std::uint64_t seed, std::uint64_t index);
 /// The same sample of a body that moves.
-void add_motion(const BodyMotion& motion, const Eigen::Isometry3d& T_world_body,
-                ImuSample& sample);
+void add_motion(const BodyMotion& motion, const Eigen::Isometry3d& T_world_body, ImuSample& sample);
 
 }  // namespace simulator

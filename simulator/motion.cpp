@@ -43,9 +43,9 @@ BodyMotion motion_at(const MotionParams& params, const Eigen::Isometry3d& T_worl
   const Eigen::Isometry3d now = moved(params, T_world_body, t_s);
   const Eigen::Isometry3d after = moved(params, T_world_body, t_s + kStep_s);
   const Eigen::AngleAxisd turn(before.linear().transpose() * after.linear());
-  return {(before.translation() - 2.0 * now.translation() + after.translation()) /
-              (kStep_s * kStep_s),
-          turn.angle() / (2.0 * kStep_s) * turn.axis()};
+  return {
+      (before.translation() - 2.0 * now.translation() + after.translation()) / (kStep_s * kStep_s),
+      turn.angle() / (2.0 * kStep_s) * turn.axis()};
 }
 
 }  // namespace simulator

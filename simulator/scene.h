@@ -88,7 +88,7 @@ struct SceneParams {
   double spacing_m = 0.30;                ///< [0.15, 0.5] from rung to rung along the rails
   double clear_width_m = 0.40;            ///< [0.2, 0.8] between the inner faces of the rails
   int num_rungs = 8;                      ///< [1, 16]
-  std::optional<int> damaged_rung;        ///< of kMissing, kBent, kBroken, kLoose; none: from the seed
+  std::optional<int> damaged_rung;  ///< of kMissing, kBent, kBroken, kLoose; none: from the seed
 };
 
 /// "" or the violated relation.

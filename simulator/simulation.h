@@ -42,7 +42,7 @@ struct SimulationParams {
   double imu_rate_hz = 200.0;               ///< (0, 1000]
   MotionParams motion;
   std::optional<Removal> removal;
-  std::int64_t start_utime_us = 0;          ///< time of head 0's first frame
+  std::int64_t start_utime_us = 0;  ///< time of head 0's first frame
 };
 
 /// "" or the violated relation.

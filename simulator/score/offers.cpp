@@ -24,9 +24,8 @@ bool is_on(const Vector3d& place_m, const TrueRung& rung, const OfferParams& par
 std::vector<Offer> offers_of(const ladder_msgs::ladder_t& m) {
   std::vector<Offer> offers;
   const std::vector<ReportedRung> rungs = rungs_of(m);
-  const std::size_t num_intervals =
-      std::min({m.interval_rung.size(), m.interval_from_m.size(), m.interval_to_m.size(),
-                m.interval_reason.size()});
+  const std::size_t num_intervals = std::min({m.interval_rung.size(), m.interval_from_m.size(),
+                                              m.interval_to_m.size(), m.interval_reason.size()});
   for (std::size_t i = 0; i < num_intervals; ++i) {
     const auto rung = static_cast<std::size_t>(m.interval_rung[i]);
     if (m.interval_reason[i] != ladder_msgs::ladder_t::REASON_NONE || rung >= rungs.size()) {

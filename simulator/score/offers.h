@@ -12,7 +12,7 @@
 namespace simulator {
 
 struct OfferParams {
-  double max_axis_m = 0.05;    ///< offered place to the axis of the rung it is on
+  double max_axis_m = 0.05;     ///< offered place to the axis of the rung it is on
   double claw_width_m = 0.034;  ///< nearer to a rail or a broken end it cannot close
   double reaction_s = 1.0;      ///< a rung taken away may be offered so long (a metric of its own)
 };

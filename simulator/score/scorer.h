@@ -3,7 +3,8 @@
 //
 // Which frames count: recall, precision, errors, candidates, bars and topology are of the LAST
 // frame of LADDER_RUNGS; *_all_frames, false_ladders, ladders_confirmed, grasps, identities,
-// removals and the frames_to_* are over ALL frames. Each frame is compared with the truth nearest in utime.
+// removals and the frames_to_* are over ALL frames. Each frame is compared with the truth nearest
+// in utime.
 #pragma once
 
 #include <cstdint>

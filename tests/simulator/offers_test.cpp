@@ -36,8 +36,8 @@ TEST(Offers, KeepAClawsWidthFromTheEnds) {
   EXPECT_EQ(num_unsafe(truth(), offering(0.035F, 0.365F)), 0);
   EXPECT_EQ(num_unsafe(truth(), offering(0.033F, 0.365F)), 1);
   EXPECT_EQ(num_unsafe(truth(), offering(0.035F, 0.367F)), 1);
-  EXPECT_EQ(
-      score_of(truth(), offering(0.0F, 0.4F, ladder_t::REASON_RAIL_TOO_NEAR)).grasps_offered, 0);
+  EXPECT_EQ(score_of(truth(), offering(0.0F, 0.4F, ladder_t::REASON_RAIL_TOO_NEAR)).grasps_offered,
+            0);
 }
 
 // The same stretch is unsafe on a bent rung, a stub, a bar of no ladder, and where nothing is.
@@ -108,9 +108,9 @@ TEST(Identities, SwitchesAreCounted) {
 TEST(Removals, AreTimed) {
   truth_t after = truth(1'000'000);
   after.num_rungs = 2;
-  for (auto* column : {&after.rung_x0_m, &after.rung_y0_m, &after.rung_z0_m, &after.rung_x1_m,
-                       &after.rung_y1_m, &after.rung_z1_m, &after.rung_radius_m,
-                       &after.rung_visible}) {
+  for (auto* column :
+       {&after.rung_x0_m, &after.rung_y0_m, &after.rung_z0_m, &after.rung_x1_m, &after.rung_y1_m,
+        &after.rung_z1_m, &after.rung_radius_m, &after.rung_visible}) {
     column->erase(column->begin());
   }
   after.rung_id.erase(after.rung_id.begin());

@@ -164,7 +164,8 @@ TEST(Simulation, ImuFeelsGravity) {
 // Odom starts at the body, and head 0 looks along its x axis (seen from above).
 TEST(Simulation, OdomFollowsHeadZero) {
   const Simulation simulation(small());
-  const Eigen::Isometry3d T_odom_body = simulation.T_odom_world() * simulation.T_world_body(kStart_us);
+  const Eigen::Isometry3d T_odom_body =
+      simulation.T_odom_world() * simulation.T_world_body(kStart_us);
   EXPECT_LT(T_odom_body.translation().norm(), 1e-12);
   const Eigen::Vector3d ahead =
       (T_odom_body * simulation.head(0).T_body_head_nominal()).linear().col(2);
