@@ -83,11 +83,12 @@ void Odometry::locate(const OdometryInput& input) {
     estimate_.slipped.reset();
     return;
   }
-  // A claw settles across its rung. Along it any claw may slide, the old ones too: all count alike.
-  const Eigen::Vector3d along = estimate_.q_odom_body * Eigen::Vector3d::UnitY();
+  // A claw settles along the ladder, by its load: there the settled ones count. In other directions
+  // all count alike: one foot alone would add what an unseen turn of the body moves it.
+  const Eigen::Vector3d up = estimate_.q_odom_body * Eigen::Vector3d::UnitX();
   by_all_m /= sum_all;
   by_settled_m /= sum_weight;
-  estimate_.position_odom_m = by_settled_m + along.dot(by_all_m - by_settled_m) * along;
+  estimate_.position_odom_m = by_all_m + up.dot(by_settled_m - by_all_m) * up;
   // Anchors come from one another and share their errors: those are averaged, not divided.
   const double foot_variance_m2 = params_.foot_sigma_m * params_.foot_sigma_m;
   estimate_.position_sigma_m = std::sqrt(
@@ -115,7 +116,7 @@ void Odometry::find_slip(const OdometryInput& input) {
 
 void Odometry::keep_anchors(const OdometryInput& input, bool is_first) {
   const double part = std::min(1.0, input.dt_s / params_.settling_s);
-  const Eigen::Vector3d along = estimate_.q_odom_body * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d up = estimate_.q_odom_body * Eigen::Vector3d::UnitX();
   for (const Leg leg : kLegs) {
     Anchor& anchor = anchors_[leg];
     const bool is_loaded = input.weight[leg] >= 1.0 - kLeastWeight;
@@ -125,7 +126,7 @@ void Odometry::keep_anchors(const OdometryInput& input, bool is_first) {
       set_anchor(leg, seat_odom_m(input, leg), is_first);
     } else if (anchor.set && !has_settled(leg)) {
       const Eigen::Vector3d off_m = seat_odom_m(input, leg) - anchor.position_m;
-      anchor.position_m += part * (off_m - along.dot(off_m) * along);
+      anchor.position_m += part * up.dot(off_m) * up;
     }
   }
 }
