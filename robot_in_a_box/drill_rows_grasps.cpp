@@ -21,6 +21,9 @@ using S = climb::ControllerState;
 /// is the measured one.
 constexpr std::int64_t kJawTravel_us = 70'000;
 
+/// The way back to the old rung with its three tries (climb/README.md) takes no longer.
+constexpr std::int64_t kWayBack_us = 20'000'000;
+
 /// Before HOLD a robot that stands looks again (ControllerParams::look_again_s): trust may return.
 constexpr std::int64_t kLookAgain_us = 2'000'000;
 
@@ -236,7 +239,7 @@ constexpr std::array kRows = {
              harm_to_grasps, nullptr, 2 * kT_us, 500'000},
     DrillRow{5, "b", "target withdrawn before commit", "its rung is flagged as damaged",
              "back on the old rung", not_committed, 1, withdraw, next_message_at, holds_again,
-             harm_to_grasps, nullptr, 12'000'000, 12'500'000},
+             harm_to_grasps, nullptr, kWayBack_us, kWayBack_us + 500'000},
     DrillRow{5, "c", "target withdrawn after commit", "its rung is flagged as damaged",
              "goes on to the contact test", committed, 1, withdraw, next_message_at, holds_again,
              harm_by_turning_back, nullptr, 6'000'000, 6'500'000},
