@@ -21,12 +21,6 @@ using S = climb::ControllerState;
 /// is the measured one.
 constexpr std::int64_t kJawTravel_us = 70'000;
 
-/// The way back to the old rung with its three tries (climb/README.md) takes no longer.
-constexpr std::int64_t kWayBack_us = 20'000'000;
-
-/// Before HOLD a robot that stands looks again (ControllerParams::look_again_s): trust may return.
-constexpr std::int64_t kLookAgain_us = 2'000'000;
-
 bool works(const Situation& at) {
   return at.state == S::kClimbing || at.state == S::kArming;
 }
@@ -48,14 +42,9 @@ std::int64_t decision_due_at(const CaseRun& run) {
   }
   return run.now_us();
 }
-/// The reason is told and nobody reaches. It may look again for a while before it says HOLD.
 bool is_refused(const CaseRun& run) {
   const bool named = run.report().output.refusal != climb::Refusal::kNone;
-  const bool stands = run.state() == S::kHold || run.state() == S::kClimbing;
-  return stands && named && decision_due_at(run) >= 0;
-}
-bool holds_with_reason(const CaseRun& run) {
-  return is_refused(run) && run.state() == S::kHold;
+  return run.state() == S::kHold && named;
 }
 void climb_anyway(CaseRun& run) {
   if (run.since_us() == 200'000) run.box().order(Order::kClimb);
@@ -222,24 +211,18 @@ void break_and_close_touch(CaseRun& run) {
 }
 
 constexpr std::array kRows = {
-    DrillRow{4, "a", "nothing in reach", "only far rungs are seen", "no reach, reason told",
+    DrillRow{4, "a", "nothing in reach", "only far rungs are seen", "HOLD, reason told",
              decides_next, 1, see_only_far, decision_due_at, is_refused, harm_to_grasps, nullptr,
              2 * kT_us, 6'000'000},
     DrillRow{4, "b", "nothing in reach", "far rungs only, then the order to climb",
-             "no reach, reason told", in_hold, 1, see_only_far, climbed_anyway_at, is_refused,
+             "HOLD, reason told", in_hold, 1, see_only_far, climbed_anyway_at, is_refused,
              harm_by_reaching, climb_anyway, 2 * kT_us, 1'500'000},
-    DrillRow{4, "c", "nothing in reach", "only far rungs are seen", "HOLD", decides_next, 1,
-             see_only_far, decision_due_at, holds_with_reason, harm_to_grasps, nullptr,
-             kLookAgain_us + 2 * kT_us, 8'000'000},
-    DrillRow{4, "d", "nothing in reach", "far rungs only, then the order to climb", "HOLD", in_hold,
-             1, see_only_far, climbed_anyway_at, holds_with_reason, harm_by_reaching, climb_anyway,
-             kLookAgain_us + 2 * kT_us, 4'000'000},
     DrillRow{5, "a", "target withdrawn before commit", "its rung is flagged as damaged",
              "ABORT_RETURN", not_committed, 1, withdraw, next_message_at, turns_back,
              harm_to_grasps, nullptr, 2 * kT_us, 500'000},
     DrillRow{5, "b", "target withdrawn before commit", "its rung is flagged as damaged",
              "back on the old rung", not_committed, 1, withdraw, next_message_at, holds_again,
-             harm_to_grasps, nullptr, kWayBack_us, kWayBack_us + 500'000},
+             harm_to_grasps, nullptr, 12'000'000, 12'500'000},
     DrillRow{5, "c", "target withdrawn after commit", "its rung is flagged as damaged",
              "goes on to the contact test", committed, 1, withdraw, next_message_at, holds_again,
              harm_by_turning_back, nullptr, 6'000'000, 6'500'000},

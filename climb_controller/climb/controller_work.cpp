@@ -146,12 +146,13 @@ void Controller::work_climbing(const ControllerInput& input) {
 }
 
 bool Controller::looks_again() {
-  // Trust comes and goes: what is not there, or not good enough, is looked at for a while. The top
-  // is the top when nothing was seen above it all that time.
-  const bool may_pass =
-      plan_.at_top || plan_.refusal == Refusal::kNoLadder ||
-      plan_.refusal == Refusal::kNotTrusted || plan_.refusal == Refusal::kLowConfidence ||
-      plan_.refusal == Refusal::kUncertain || plan_.refusal == Refusal::kNoStretch;
+  // Trust comes and goes: a rung that is not good enough just now is looked at for a while; none
+  // there, or no ladder at all, is told at once. The top is the top when nothing was seen above it
+  // all that time.
+  const bool may_pass = plan_.at_top || plan_.refusal == Refusal::kNotTrusted ||
+                        plan_.refusal == Refusal::kLowConfidence ||
+                        plan_.refusal == Refusal::kUncertain ||
+                        plan_.refusal == Refusal::kNoStretch;
   if (plan_.ready || !may_pass) {
     looked_s_ = 0.0;
     return false;

@@ -2,6 +2,7 @@
 #include "climb/limb_cycle.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace climb {
 namespace {
@@ -124,8 +125,7 @@ void LimbCycle::enter(LimbState from) {
       pulled_from_m_ = input_.T_odom_body * kinematics_.foot_m(leg_, input_.angles_rad);
       // What the closing jaw already draws on the rung counts: it adds to the pull.
       if (from != S::kClosing) torques_before_Nm_ = input_.torques_Nm;
-      return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m),
-                       motion_.pull_test_m * 1.875 / motion_.pull_s);
+      return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m), pull_m_s());
     case S::kLoading:
       if (from == S::kVerify) {
         // What was pulled is let go: legs that pull against each other turn the body.
@@ -202,9 +202,7 @@ void LimbCycle::work(const LimbInput& input) {
     case S::kClosing:
       return finish_closing(input);
     case S::kVerify:
-      if (arrived || (!input.stop && rung_force_N(input).norm() >= motion_.pull_test_max_N))
-        finish_pull(input);
-      return;
+      return pull(input, arrived);
     case S::kLoading:
       if (has_lost(input))
         take(LimbEvent::kLost);
@@ -323,10 +321,27 @@ void LimbCycle::finish_closing(const LimbInput& input) {
   }
 }
 
-void LimbCycle::finish_pull(const LimbInput& input) {
+void LimbCycle::pull(const LimbInput& input, bool arrived) {
+  const double force_N = rung_force_N(input).norm();
+  const bool is_further = stage_ == Stage::kOut;
+  const double enough_N = is_further ? motion_.pull_test_min_N : motion_.pull_test_max_N;
+  if (!arrived && (input.stop || !(force_N >= enough_N))) return;
+  // A stretched leg is soft: what stays in the claw is pulled further, to the force asked for.
+  const bool stays = confirmation_.witness().closed() &&
+                     std::abs(pull_slip_m(input)) < motion_.pull_test_max_slip_m;
+  if (is_further || !stays || force_N >= motion_.pull_test_min_N) return finish_pull(input);
+  stage_ = Stage::kOut;
+  const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
+  move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_further_m), pull_m_s());
+}
+
+double LimbCycle::pull_slip_m(const LimbInput& input) const {
   const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
-  const Eigen::Vector3d moved_m = kinematics_.foot_m(leg_, input.angles_rad) - from_m;
-  last_witness_ = confirmation_.conclude({moved_m.z(), rung_force_N(input).norm()});
+  return (kinematics_.foot_m(leg_, input.angles_rad) - from_m).z();
+}
+
+void LimbCycle::finish_pull(const LimbInput& input) {
+  last_witness_ = confirmation_.conclude({pull_slip_m(input), rung_force_N(input).norm()});
   // On fewer than three others the body gives way too much to be pulled at, and what has closed on
   // a rung is not opened again (invariant 3).
   const bool is_needed = !input.others_hold && last_witness_.closed();

@@ -122,6 +122,8 @@ class LimbCycle {
   void work_pregrasp(const LimbInput& input, bool arrived);
   void work_regrasp(const LimbInput& input);
   void finish_closing(const LimbInput& input);
+  void pull(const LimbInput& input, bool arrived);
+  double pull_slip_m(const LimbInput& input) const;  ///< of the foot, back from the ladder
   void finish_pull(const LimbInput& input);
   void return_home(const LimbInput& input, bool arrived);
   void keep_budget();
@@ -138,6 +140,7 @@ class LimbCycle {
   bool is_first_try() const { return num_tries_ == 0 && num_places_ == 1 && !returned_; }
   bool is_over_budget() const { return spent_s_ >= params_.budget_s; }
   double path_part() const;
+  double pull_m_s() const { return motion_.pull_test_m * 1.875 / motion_.pull_s; }  ///< peak
   void follow_body();
   Eigen::Vector3d aimed_m(const Eigen::Vector3d& point_m) const;
   double try_offset_m() const;

@@ -67,20 +67,21 @@ struct RobotParams {
 
 /// Lengths, speeds and times of one limb's step.
 struct MotionParams {
-  double period_s = 0.01;        ///< control cycle
-  double stand_off_m = 0.28;     ///< body origin to the ladder's plane (run: 0.26-0.32 works)
-  double lateral_home_m = 0.15;  ///< |y| of a foot (run)
-  double retract_m = 0.06;       ///< along the claw's opening axis (run)
-  double retract_m_s = 0.20;     ///< (run)
-  double transit_m_s = 0.40;     ///< (run: 0.45 needs 2.26 rad/s)
-  double pregrasp_m = 0.05;      ///< before the rung, along the claw's opening axis (run)
-  double aim_up_m = 0.008;       ///< the claw comes so much too high: a finger is above (run)
-  double aim_out_m = 0.003;      ///< ... and stays so far before the rung (run)
-  double approach_m_s = 0.05;    ///< peak, towards the rung (run)
-  double bump_N = 30.0;          ///< of a claw on its way: it has met something (run)
-  double bump_near_m = 0.015;    ///< met so near its end, it is at its rung (own: capture)
-  double cartesian_m_s2 = 1.0;   ///< of the foot on a straight line (own)
-  double pull_test_m = 0.010;    ///< back from the ladder (run)
+  double period_s = 0.01;         ///< control cycle
+  double stand_off_m = 0.28;      ///< body origin to the ladder's plane (run: 0.26-0.32 works)
+  double lateral_home_m = 0.15;   ///< |y| of a foot (run)
+  double retract_m = 0.06;        ///< along the claw's opening axis (run)
+  double retract_m_s = 0.20;      ///< (run)
+  double transit_m_s = 0.40;      ///< (run: 0.45 needs 2.26 rad/s)
+  double pregrasp_m = 0.05;       ///< before the rung, along the claw's opening axis (run)
+  double aim_up_m = 0.008;        ///< the claw comes so much too high: a finger is above (run)
+  double aim_out_m = 0.003;       ///< ... and stays so far before the rung (run)
+  double approach_m_s = 0.05;     ///< peak, towards the rung (run)
+  double bump_N = 30.0;           ///< of a claw on its way: it has met something (run)
+  double bump_near_m = 0.015;     ///< met so near its end, it is at its rung (own: capture)
+  double cartesian_m_s2 = 1.0;    ///< of the foot on a straight line (own)
+  double pull_test_m = 0.010;     ///< back from the ladder (run)
+  double pull_further_m = 0.004;  ///< where it falls short of the force: a stretched leg (own)
   double pull_test_max_slip_m = 0.005;
   double pull_test_min_N = 40.0;   ///< the static share of a limb (run)
   double pull_test_max_N = 100.0;  ///< (run)

@@ -17,7 +17,6 @@ class LadderStand {
  public:
   static constexpr double kMoves = std::numeric_limits<double>::quiet_NaN();
   static constexpr double kSpacing_m = 0.30;
-  static constexpr double kStiffness_Nm_rad = 800.0;
   static constexpr double kLag = 0.25;  ///< of the error per cycle: 35 ms
 
   explicit LadderStand(const climb::ClimbParams& params, int num_rungs = 9)
@@ -76,6 +75,7 @@ class LadderStand {
   double body_height_m() const { return T_odom_body_.translation().z(); }
 
   climb::ControllerInput input;
+  double stiffness_Nm_rad = 800.0;  ///< of each joint
   bool sags = false;  ///< without feed-forward, as when no dock is there
   /// A jaw that moves no more, not even with its rung; NaN = it moves.
   climb::PerLeg<double> stuck_jaw_rad = {kMoves, kMoves, kMoves, kMoves};
@@ -169,7 +169,7 @@ class LadderStand {
       for (int joint = 0; joint < climb::kNumLegJoints; ++joint) {
         const double error_rad = drive_rad_[leg][joint] - measured_rad_[leg][joint];
         input.axes[climb::axis_of(leg, joint)] = {measured_rad_[leg][joint],
-                                                  kStiffness_Nm_rad * error_rad, true};
+                                                  stiffness_Nm_rad * error_rad, true};
       }
       input.axes[climb::axis_of(leg, climb::kJaw)] = {jaw_rad_[leg], jaw_torque_Nm_[leg], true};
       input.touch[leg] = held_rung_[leg] > 0;

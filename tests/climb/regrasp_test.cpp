@@ -29,6 +29,24 @@ class RegraspTest : public climb_tests::ControllerFixture {
     }
     return places;
   }
+  /// Through VERIFY; the most that the rear right foot pulled, N.
+  double pull() {
+    double most_N = 0.0;
+    const LegKinematics kinematics(params().climb.robot);
+    PerLeg<LegAngles> before;
+    for (int joint = 0; joint < kNumLegJoints; ++joint)
+      before[kRearRight][joint] = stand_.input.axes[axis_of(kRearRight, joint)].torque_Nm;
+    while (output_.limbs[kRearRight] == LimbState::kVerify) {
+      LegAngles torque_Nm;
+      for (int joint = 0; joint < kNumLegJoints; ++joint)
+        torque_Nm[joint] = stand_.input.axes[axis_of(kRearRight, joint)].torque_Nm;
+      const Eigen::Matrix3d J = kinematics.jacobian(kRearRight, stand_.measured_rad(kRearRight));
+      most_N =
+          std::max(most_N, (J.transpose().inverse() * (torque_Nm - before[kRearRight])).norm());
+      cycle();
+    }
+    return most_N;
+  }
 };
 
 // Three tries at the first place, one elsewhere on the same rung at least a claw's width aside,
@@ -121,22 +139,24 @@ TEST_F(RegraspTest, AJawThatDoesNotOpenHolds) {
 // what the closed jaw still draws the other way when it begins (20 N at most) is overcome first.
 TEST_F(RegraspTest, PullsNoHarderThanItMay) {
   climb_to(LimbState::kVerify);
-  double most_N = 0.0;
-  const LegKinematics kinematics(params().climb.robot);
-  PerLeg<LegAngles> before;
-  for (int joint = 0; joint < kNumLegJoints; ++joint)
-    before[kRearRight][joint] = stand_.input.axes[axis_of(kRearRight, joint)].torque_Nm;
-  while (output_.limbs[kRearRight] == LimbState::kVerify) {
-    LegAngles torque_Nm;
-    for (int joint = 0; joint < kNumLegJoints; ++joint)
-      torque_Nm[joint] = stand_.input.axes[axis_of(kRearRight, joint)].torque_Nm;
-    const Eigen::Matrix3d J = kinematics.jacobian(kRearRight, stand_.measured_rad(kRearRight));
-    most_N = std::max(most_N, (J.transpose().inverse() * (torque_Nm - before[kRearRight])).norm());
-    cycle();
-  }
+  const double most_N = pull();
   EXPECT_EQ(output_.limbs[kRearRight], LimbState::kLoading);
   EXPECT_GE(most_N, 40.0);
   EXPECT_LE(most_N, 125.0);
+}
+
+// A leg so soft that 10 mm fall short of 40 N is pulled up to 4 mm further; one that falls short
+// then too has no grasp. At a fifth of the stand's stiffness 10 mm give 40 N.
+TEST_F(RegraspTest, PullsASoftLegFurther) {
+  const auto after_pull = [this](double part) {
+    climb_to(LimbState::kVerify);
+    stand_.stiffness_Nm_rad *= part;
+    pull();
+    return output_.limbs[kRearRight];
+  };
+  EXPECT_EQ(after_pull(0.25), LimbState::kLoading);
+  EXPECT_EQ(after_pull(0.16), LimbState::kLoading);
+  EXPECT_EQ(after_pull(0.11), LimbState::kRegrasp);
 }
 
 }  // namespace
