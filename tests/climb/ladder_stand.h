@@ -76,7 +76,7 @@ class LadderStand {
 
   climb::ControllerInput input;
   double stiffness_Nm_rad = 800.0;  ///< of each joint
-  bool sags = false;  ///< without feed-forward, as when no dock is there
+  bool sags = false;                ///< without feed-forward, as when no dock is there
   /// A jaw that moves no more, not even with its rung; NaN = it moves.
   climb::PerLeg<double> stuck_jaw_rad = {kMoves, kMoves, kMoves, kMoves};
   bool sees = true;
