@@ -4,9 +4,6 @@
 // truth and, at the end, the figures of the climb. Signals as with ladder_plant: SIGUSR1 dock,
 // SIGUSR2 E-stop; --hand takes these and every fault as lines. Exit codes: 0 done or asked to stop,
 // 2 wrong arguments, 3 a door is shut.
-#include <array>
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <optional>
 #include <sstream>
@@ -14,8 +11,6 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <poll.h>
-#include <sched.h>
 #include <unistd.h>
 
 #include "runtime/channels.h"
@@ -23,34 +18,17 @@
 #include "simulator/physics/climb_witness.h"
 #include "simulator/physics/head_thread.h"
 #include "simulator/physics/physics_mechanics.h"
-#include "simulator/plant/bus_hub.h"
 #include "simulator/plant/fault_script.h"
-#include "simulator/plant/line_hub.h"
+#include "simulator/plant/hardware_doors.h"
 #include "simulator/plant/line_reader.h"
+#include "simulator/plant/plant_process.h"
 #include "simulator/plant/truth_line.h"
 #include "simulator/plant/truth_perception.h"
 
 namespace {
 
-constexpr int kExitArguments = 2;
-constexpr int kExitNoDoor = 3;
-constexpr int kPriority = 40;
 constexpr std::int64_t kImuPeriod_us = 10'000;
-/// A process that was held up goes on from where it is, it does not run after lost seconds.
 constexpr std::int64_t kMaxCatchUp_us = 50'000;
-
-volatile std::sig_atomic_t stop_requested = 0;
-void request_stop(int) {
-  stop_requested = 1;
-}
-volatile std::sig_atomic_t num_dock_signals = 0;
-void toggle_dock(int) {
-  num_dock_signals = num_dock_signals + 1;
-}
-volatile std::sig_atomic_t num_estop_signals = 0;
-void toggle_estop(int) {
-  num_estop_signals = num_estop_signals + 1;
-}
 
 struct Arguments {
   std::string can = "unix:/tmp/ladder_can";
@@ -127,24 +105,11 @@ std::vector<int> unsafe_rungs(const simulator::Scene& scene) {
   return unsafe;
 }
 
-template <class Clock>
-std::int64_t microseconds() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
-      .count();
-}
-
 /// Odom begins where the body is in the dock; its axes are the world's.
 Eigen::Isometry3d odom_at(const Eigen::Isometry3d& T_world_body) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.translation() = -T_world_body.translation();
   return pose;
-}
-
-/// Drives do not wait for other programs: real-time where permitted, below the controller's.
-void stand_for_hardware() {
-  sched_param priority{};
-  priority.sched_priority = kPriority;
-  static_cast<void>(sched_setscheduler(0, SCHED_FIFO, &priority));
 }
 
 class RunningRobot {
@@ -157,19 +122,13 @@ class RunningRobot {
                [this](const simulator::PlantParams& plant) {
                  return std::make_unique<simulator::PhysicsMechanics>(plant, model_);
                }),
-        hub_(memory_, simulator::open_gateway(arguments.can)),
+        doors_(memory_, arguments.can, arguments.lines),
         player_(faults_of(arguments), memory_),
         imu_bus_(arguments.url),
         heads_(simulator::BodyHeads(heads_of(arguments), scene_, model_,
                                     odom_at(plant_.T_world_body())),
                arguments.url),
         witness_(arguments.url, unsafe_rungs(scene_)) {
-    const std::string prefix = "unix:";
-    if (arguments.lines.rfind(prefix, 0) == 0) {
-      lines_.emplace(arguments.lines.substr(prefix.size()));
-    } else {
-      chip_.emplace(arguments.lines, std::array<int, simulator::kNumLines>{0, 1, 2, 3, 4});
-    }
     if (arguments.has_hand) hand_.emplace(STDIN_FILENO);
     std::printf("ladder %s, seed %llu, %d rungs; servo bus %s, lines %s\n", arguments.scene.c_str(),
                 static_cast<unsigned long long>(arguments.ladder.seed), arguments.ladder.num_rungs,
@@ -178,59 +137,32 @@ class RunningRobot {
   }
 
   void run() {
-    const std::int64_t start_us = microseconds<std::chrono::steady_clock>();
     const auto end_us = static_cast<std::int64_t>(arguments_.seconds * 1e6);
-    std::int64_t skipped_us = 0;
-    while (stop_requested == 0 && (end_us == 0 || last_us_ < end_us)) {
-      wait();
-      const std::int64_t wall_us = microseconds<std::chrono::steady_clock>() - start_us;
-      const std::int64_t behind_us = wall_us - skipped_us - last_us_;
-      if (behind_us > kMaxCatchUp_us) skipped_us += behind_us - kMaxCatchUp_us;
-      step(wall_us - skipped_us, 1e-6 * static_cast<double>(wall_us));
+    while (!signals_.is_stop_requested() && (end_us == 0 || clock_.now_us() < end_us)) {
+      doors_.wait();
+      step(clock_.advance());
     }
   }
   const simulator::ClimbWitness& witness() const { return witness_; }
 
  private:
-  /// Until a frame or a record comes, at most one step.
-  void wait() {
-    descriptors_.clear();
-    hub_.gateway().add_to_poll(descriptors_);
-    if (lines_) lines_->add_to_poll(descriptors_);
-    ::poll(descriptors_.data(), descriptors_.size(), 1);
-  }
-
-  void step(std::int64_t now_us, double wall_s) {
-    hub_.take_in(now_us);
-    if (lines_) {
-      for (const auto& hand : lines_->receive()) plant_.set_wire_fault(hand.line, hand.fault);
-    }
+  void step(std::int64_t now_us) {
+    doors_.take_in(now_us, plant_);
     if (hand_) {
       for (const std::string& line : hand_->take()) obey(line, now_us);
     }
     player_.apply(now_us, plant_, memory_);
-    obey_signals();
+    signals_.obey(plant_);
     plant_.advance(now_us);
-    last_us_ = now_us;
-    hub_.give_out(now_us);
-    if (lines_) lines_->publish(plant_.lines());
-    if (chip_) chip_->publish(plant_.lines());
+    doors_.give_out(now_us, plant_);
     heads_.offer(now_us, model_, plant_.T_world_body());
     print(now_us);
     if (now_us < imu_due_us_) return;
     imu_due_us_ = now_us + kImuPeriod_us;
-    ladder_msgs::imu_t imu =
-        simulator::imu_message(plant_.imu(), microseconds<std::chrono::system_clock>());
+    ladder_msgs::imu_t imu = simulator::imu_message(plant_.imu(), simulator::utime_us());
     imu.seq = imu_seq_++;
     imu_bus_.publish(runtime::channels::kImu, imu);
-    witness_.see(plant_.truth(), wall_s);
-  }
-
-  void obey_signals() {
-    if (num_dock_signals != obeyed_dock_signals_) plant_.set_docked(!plant_.is_docked());
-    obeyed_dock_signals_ = num_dock_signals;
-    if (num_estop_signals != obeyed_estop_signals_) plant_.press_estop(num_estop_signals % 2 != 0);
-    obeyed_estop_signals_ = num_estop_signals;
+    witness_.see(plant_.truth(), 1e-6 * static_cast<double>(clock_.wall_us()));
   }
 
   void obey(const std::string& line, std::int64_t now_us) {
@@ -263,57 +195,36 @@ class RunningRobot {
   }
 
   const Arguments& arguments_;
+  simulator::HandSignals signals_;  // first: it may be asked to stop while it starts
   simulator::Scene scene_;
   simulator::PhysicsModel model_;
   simulator::MemoryBus memory_;
   simulator::RobotPlant plant_;
-  simulator::BusHub hub_;
+  simulator::HardwareDoors doors_;
+  simulator::PlantClock clock_{kMaxCatchUp_us};
   simulator::FaultPlayer player_;
   runtime::Bus imu_bus_;
   simulator::HeadThread heads_;
   simulator::ClimbWitness witness_;
-  std::optional<simulator::LineHub> lines_;
-  std::optional<simulator::SimulatedChip> chip_;
   std::optional<simulator::LineReader> hand_;
-  std::vector<pollfd> descriptors_;
-  std::int64_t last_us_ = 0;
   std::int64_t imu_due_us_ = 0;
   std::int64_t imu_seq_ = 0;
   std::int64_t print_due_us_ = 0;
-  int obeyed_dock_signals_ = 0;
-  int obeyed_estop_signals_ = 0;
 };
 
 int run(int argc, char** argv) {
   Arguments arguments;
   parse(argc, argv, arguments);
   RunningRobot robot(arguments);
-  stand_for_hardware();
+  simulator::stand_for_hardware();
   robot.run();
   if (arguments.json_path.empty() || robot.witness().write(arguments.json_path)) return 0;
   std::fprintf(stderr, "ladder_robot: cannot write %s\n", arguments.json_path.c_str());
-  return kExitNoDoor;
+  return simulator::kExitNoDoor;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGUSR1, toggle_dock);
-  std::signal(SIGUSR2, toggle_estop);
-  int exit_code = kExitArguments;
-  try {
-    return run(argc, argv);
-  } catch (const CLI::CallForHelp&) {
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "ladder_robot: %s\n", error.what());
-  } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "ladder_robot: %s\n", error.what());
-  } catch (const std::runtime_error& error) {
-    exit_code = kExitNoDoor;
-    std::fprintf(stderr, "ladder_robot: %s\n", error.what());
-  }
-  return exit_code;
+  return simulator::exit_code_of("ladder_robot", run, argc, argv);
 }

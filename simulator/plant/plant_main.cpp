@@ -2,26 +2,20 @@
 // ladder_plant: the robot on its ladder in real time, for a controller process that speaks CAN and
 // reads lines. Prints its state once a second. Exit codes: 0 asked to stop, 2 wrong arguments, 3 a
 // door (CAN, lines, LCM) cannot be opened.
-#include <array>
-#include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <poll.h>
-#include <sched.h>
 
 #include "runtime/bus.h"
 #include "runtime/channels.h"
-#include "simulator/plant/bus_hub.h"
 #include "simulator/plant/fault_script.h"
-#include "simulator/plant/line_hub.h"
+#include "simulator/plant/hardware_doors.h"
+#include "simulator/plant/plant_process.h"
 #include "simulator/plant/robot_plant.h"
 #include "simulator/plant/truth_line.h"
 #include "simulator/plant/truth_message.h"
@@ -29,27 +23,10 @@
 
 namespace {
 
-constexpr int kExitArguments = 2;
-constexpr int kExitNoDoor = 3;
-constexpr int kPriority = 40;
 constexpr std::int64_t kTruthPeriod_us = 100'000;
 constexpr std::int64_t kRungsPeriod_us = 66'667;
 constexpr std::int64_t kImuPeriod_us = 10'000;
-/// A process that was held up goes on from where it is, it does not run after lost seconds.
 constexpr std::int64_t kMaxCatchUp_us = 100'000;
-
-volatile std::sig_atomic_t stop_requested = 0;
-void request_stop(int) {
-  stop_requested = 1;
-}
-volatile std::sig_atomic_t dock_signal = 0;
-void toggle_dock(int) {
-  dock_signal = 1 - dock_signal;
-}
-volatile std::sig_atomic_t estop_pressed = 0;
-void toggle_estop(int) {
-  estop_pressed = 1 - estop_pressed;
-}
 
 struct Arguments {
   std::string can = "unix:/tmp/ladder_can";
@@ -120,82 +97,33 @@ std::vector<simulator::Fault> faults_of(const Arguments& arguments) {
   return parsed.faults;
 }
 
-std::int64_t monotonic_us() {
-  using std::chrono::steady_clock;
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             steady_clock::now().time_since_epoch())
-      .count();
-}
-
-std::int64_t utime_us() {
-  using std::chrono::system_clock;
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             system_clock::now().time_since_epoch())
-      .count();
-}
-
-/// Drives do not wait for other programs: real-time where permitted, below the controller's.
-void stand_for_hardware() {
-  sched_param priority{};
-  priority.sched_priority = kPriority;
-  static_cast<void>(sched_setscheduler(0, SCHED_FIFO, &priority));
-}
-
 class RunningPlant {
  public:
   explicit RunningPlant(const Arguments& arguments)
       : arguments_(arguments),
         plant_(arguments.plant, bus_),
-        hub_(bus_, simulator::open_gateway(arguments.can)),
+        doors_(bus_, arguments.can, arguments.lines),
         player_(faults_of(arguments), bus_),
         odom_origin_m_(plant_.T_world_body().translation()) {
-    const std::string prefix = "unix:";
-    if (arguments.lines.rfind(prefix, 0) == 0) {
-      lines_.emplace(arguments.lines.substr(prefix.size()));
-    } else if (!arguments.lines.empty()) {
-      chip_.emplace(arguments.lines, std::array<int, simulator::kNumLines>{0, 1, 2, 3, 4});
-    }
     if (!arguments.truth_url.empty()) truth_bus_.emplace(arguments.truth_url);
     if (!arguments.rungs_url.empty()) rungs_bus_.emplace(arguments.rungs_url);
   }
 
   void run() {
-    const std::int64_t start_us = monotonic_us();
     const auto end_us = static_cast<std::int64_t>(arguments_.seconds * 1e6);
-    std::int64_t skipped_us = 0;
-    while (stop_requested == 0) {
-      wait();
-      std::int64_t now_us = monotonic_us() - start_us - skipped_us;
-      if (now_us - last_us_ > kMaxCatchUp_us) {
-        skipped_us += now_us - last_us_ - kMaxCatchUp_us;
-        now_us = last_us_ + kMaxCatchUp_us;
-      }
-      step(now_us);
-      last_us_ = now_us;
-      if (end_us > 0 && now_us >= end_us) return;
+    while (!signals_.is_stop_requested() && (end_us == 0 || clock_.now_us() < end_us)) {
+      doors_.wait();
+      step(clock_.advance());
     }
   }
 
  private:
-  /// Until a frame or a record comes, at most one step.
-  void wait() {
-    descriptors_.clear();
-    hub_.gateway().add_to_poll(descriptors_);
-    if (lines_) lines_->add_to_poll(descriptors_);
-    ::poll(descriptors_.data(), descriptors_.size(), 1);
-  }
-
   void step(std::int64_t now_us) {
-    hub_.take_in(now_us);
-    if (lines_) {
-      for (const auto& hand : lines_->receive()) plant_.set_wire_fault(hand.line, hand.fault);
-    }
+    doors_.take_in(now_us, plant_);
     player_.apply(now_us, plant_, bus_);
-    obey_hand();
+    signals_.obey(plant_);
     plant_.advance(now_us);
-    hub_.give_out(now_us);
-    if (lines_) lines_->publish(plant_.lines());
-    if (chip_ && !chip_->publish(plant_.lines())) ++num_line_failures_;
+    doors_.give_out(now_us, plant_);
     if (truth_bus_ && now_us >= truth_due_us_) publish_truth(now_us);
     if (rungs_bus_) publish_perception(now_us);
     const auto period_us = static_cast<std::int64_t>(arguments_.print_period_s * 1e6);
@@ -205,19 +133,10 @@ class RunningPlant {
     }
   }
 
-  /// What a tester does by signals; a script may do the same at its times.
-  void obey_hand() {
-    if (dock_signal != hand_dock_signal_) plant_.set_docked(!plant_.is_docked());
-    hand_dock_signal_ = dock_signal;
-    if (estop_pressed == hand_pressed_) return;
-    hand_pressed_ = estop_pressed;
-    plant_.press_estop(hand_pressed_ != 0);
-  }
-
   void publish_truth(std::int64_t now_us) {
     truth_due_us_ = now_us + kTruthPeriod_us;
-    ladder_msgs::truth_t message =
-        simulator::truth_message(plant_.truth(), plant_.world(), odom_origin_m_, utime_us());
+    ladder_msgs::truth_t message = simulator::truth_message(plant_.truth(), plant_.world(),
+                                                            odom_origin_m_, simulator::utime_us());
     message.seq = truth_seq_++;
     truth_bus_->publish(runtime::channels::kTruth, message);
   }
@@ -225,14 +144,14 @@ class RunningPlant {
   void publish_perception(std::int64_t now_us) {
     if (now_us >= imu_due_us_) {
       imu_due_us_ = now_us + kImuPeriod_us;
-      ladder_msgs::imu_t message = simulator::imu_message(plant_.imu(), utime_us());
+      ladder_msgs::imu_t message = simulator::imu_message(plant_.imu(), simulator::utime_us());
       message.seq = imu_seq_++;
       rungs_bus_->publish(runtime::channels::kImu, message);
     }
     if (now_us >= rungs_due_us_) {
       rungs_due_us_ = now_us + kRungsPeriod_us;
       ladder_msgs::ladder_t message =
-          simulator::true_rungs(plant_.world(), odom_origin_m_, utime_us());
+          simulator::true_rungs(plant_.world(), odom_origin_m_, simulator::utime_us());
       message.seq = message.topology_seq = rungs_seq_++;
       rungs_bus_->publish(runtime::channels::kRungs, message);
     }
@@ -240,27 +159,24 @@ class RunningPlant {
 
   void print(std::int64_t now_us) {
     std::printf("%8.1f s  frames %lld in %lld out %lld lost  %s\n",
-                1e-6 * static_cast<double>(now_us), static_cast<long long>(hub_.num_taken()),
-                static_cast<long long>(hub_.num_given()),
-                static_cast<long long>(hub_.gateway().num_lost()),
+                1e-6 * static_cast<double>(now_us),
+                static_cast<long long>(doors_.hub().num_taken()),
+                static_cast<long long>(doors_.hub().num_given()),
+                static_cast<long long>(doors_.hub().gateway().num_lost()),
                 simulator::truth_line(plant_.truth()).c_str());
     std::fflush(stdout);
   }
 
   const Arguments& arguments_;
+  simulator::HandSignals signals_;  // first: it may be asked to stop while it starts
   simulator::MemoryBus bus_;
   simulator::RobotPlant plant_;
-  simulator::BusHub hub_;
+  simulator::HardwareDoors doors_;
+  simulator::PlantClock clock_{kMaxCatchUp_us};
   simulator::FaultPlayer player_;
   Eigen::Vector3d odom_origin_m_;
-  std::optional<simulator::LineHub> lines_;
-  std::optional<simulator::SimulatedChip> chip_;
   std::optional<runtime::Bus> truth_bus_;
   std::optional<runtime::Bus> rungs_bus_;
-  std::vector<pollfd> descriptors_;
-  std::int64_t last_us_ = 0;
-  int hand_dock_signal_ = 0;
-  int hand_pressed_ = 0;
   std::int64_t print_due_us_ = 0;
   std::int64_t truth_due_us_ = 0;
   std::int64_t truth_seq_ = 0;
@@ -268,35 +184,18 @@ class RunningPlant {
   std::int64_t imu_seq_ = 0;
   std::int64_t rungs_due_us_ = 0;
   std::int64_t rungs_seq_ = 0;
-  std::int64_t num_line_failures_ = 0;
 };
+
+int run(int argc, char** argv) {
+  Arguments arguments;
+  parse(argc, argv, arguments);
+  simulator::stand_for_hardware();
+  RunningPlant(arguments).run();
+  return 0;
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGUSR1, toggle_dock);
-  std::signal(SIGUSR2, toggle_estop);
-  Arguments arguments;
-  try {
-    parse(argc, argv, arguments);
-    stand_for_hardware();
-    RunningPlant(arguments).run();
-    return 0;
-  } catch (const CLI::CallForHelp&) {
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "ladder_plant: %s\n", error.what());
-    return kExitArguments;
-  } catch (const std::invalid_argument& error) {
-    std::fprintf(stderr, "ladder_plant: %s\n", error.what());
-    return kExitArguments;
-  } catch (const simulator::DoorError& error) {
-    std::fprintf(stderr, "ladder_plant: %s\n", error.what());
-    return kExitNoDoor;
-  } catch (const runtime::BusError& error) {
-    std::fprintf(stderr, "ladder_plant: %s\n", error.what());
-    return kExitNoDoor;
-  }
+  return simulator::exit_code_of("ladder_plant", run, argc, argv);
 }
