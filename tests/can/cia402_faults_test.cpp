@@ -77,6 +77,21 @@ TEST(Cia402Faults, UnexpectedBootUp) {
   EXPECT_TRUE(rig.run_until(BusPhase::kReady, 3000)) << rig.fault_names();
 }
 
+// An axis that broke before is not enabled with the others, and the bus does not come up.
+TEST(Cia402Faults, BrokenAxisIsNotEnabled) {
+  BusRig rig(2);
+  ASSERT_TRUE(rig.bring_up());
+  rig.line.put(from_hex("081#1186210000000000"));
+  rig.cycle();
+  ASSERT_TRUE(rig.has(FaultCause::kEmergency, 0));
+  rig.bus->enable();
+  for (int i = 0; i < 100; ++i) {
+    rig.cycle();
+    EXPECT_NE(rig.drives[0].control_word() & 0x0F, 0x0F) << "cycle " << i;
+    EXPECT_NE(rig.bus->phase(), BusPhase::kEnabled);
+  }
+}
+
 // Network state other than operational in a heartbeat.
 TEST(Cia402Faults, LeftOperational) {
   BusRig rig(1);

@@ -30,6 +30,22 @@ void expect_silence(BusRig& rig) {
   EXPECT_EQ(rig.line.sent.size(), before);
 }
 
+// Whoever sends, by whatever way: a line with a fault lets nothing out until it is cleared.
+TEST(Cia402LineFaults, FaultedLineSendsNothing) {
+  FakeLine fake;
+  FaultLog faults(4);
+  BusLine line(fake, faults, nullptr, {});
+  line.watch(true);
+  line.begin_poll(1000);
+  EXPECT_TRUE(line.send(from_hex("080#")));
+  line.raise(FaultCause::kBusOff, -1, 0);
+  EXPECT_FALSE(line.send(from_hex("080#")));
+  EXPECT_EQ(fake.sent.size(), 1U);
+  EXPECT_TRUE(line.clear());
+  EXPECT_TRUE(line.send(from_hex("080#")));
+  EXPECT_EQ(fake.sent.size(), 2U);
+}
+
 // Ten broken frames in a second are counted, the eleventh is a fault; eleven in two seconds are
 // none.
 TEST(Cia402LineFaults, MalformedFramesByRate) {

@@ -167,6 +167,12 @@ TEST(Support, TellsWhatGivesWay) {
   ClimbParams soft = kParams;
   soft.support.grip_alarm_N = 10.0;
   EXPECT_EQ(Support(soft.robot, soft.support).check(hanging_stance(kParams)).burden, Burden::kGrip);
+  // Three quarters of what is needed are not enough.
+  const double margin = Support(soft.robot, soft.support).check(hanging_stance(kParams)).margin;
+  soft.support.grip_alarm_N *= 0.75 / margin;
+  const SupportVerdict nearly = Support(soft.robot, soft.support).check(hanging_stance(kParams));
+  EXPECT_NEAR(nearly.margin, 0.75, 0.01);
+  EXPECT_EQ(nearly.burden, Burden::kGrip);
   ClimbParams slippery = kParams;
   slippery.support.squeeze_N = 0.1;
   slippery.support.friction = 0.01;

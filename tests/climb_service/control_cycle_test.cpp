@@ -190,6 +190,19 @@ TEST(ControlCycle, ResetWhileDisarmedBringsTheBusBack) {
   EXPECT_EQ(bench.violations(), "");
 }
 
+// A reset while drives follow targets, although one of them warns: refused, and no drive stops.
+TEST(ControlCycle, ResetWhileItHoldsStopsNoDrive) {
+  CycleBench bench;
+  ASSERT_TRUE(arm(bench)) << bench.problems();
+  bench.plant.warn(6, 0x3120);
+  bench.run_s(0.1);
+  ASSERT_GT(bench.report.bus_faults.size, 0U) << bench.problems();
+  EXPECT_NE(bench.order(Order::kReset), CommandVerdict::kAccepted);
+  EXPECT_EQ(bench.report.bus_phase, can::BusPhase::kEnabled) << bench.problems();
+  EXPECT_EQ(bench.state(), ControllerState::kHold) << bench.problems();
+  EXPECT_EQ(bench.violations(), "");
+}
+
 // An E-stop that is pressed at power-up stops a bus that was never configured; released and reset,
 // the robot comes up as always.
 TEST(ControlCycle, EstopAtPowerUp) {
