@@ -26,7 +26,11 @@ void read(ConfigTable table, climb::ClawParams& p) {
   table.read("width_m", p.width_m);
   table.read("open_rad", p.open_rad);
   table.read("closed_rad", p.closed_rad);
+  table.read("empty_rad", p.empty_rad);
   table.read("on_rung_rad", p.on_rung_rad);
+  table.read("on_rung_radius_m", p.on_rung_radius_m);
+  table.read("jaw_rad_per_m", p.jaw_rad_per_m);
+  table.read("jaw_row_m", p.jaw_row_m);
   table.read("on_rung_window_rad", p.on_rung_window_rad);
   table.read("capture_m", p.capture_m);
   table.read("seat_up_m", p.seat_up_m);

@@ -20,19 +20,10 @@ struct WeakRung {
   double break_load_N = 0.0;
 };
 
-/// As config/sim.toml has it: rungs in physics are up to 30 mm thick, which opens the jaw wider.
-inline climb_controller::CycleParams cycle_in_physics() {
-  climb_controller::CycleParams params = cycle_with_brakes();
-  climb::ClawParams& claw = params.controller.climb.robot.claw;
-  claw.on_rung_rad = -0.45;
-  claw.on_rung_window_rad = 0.12;
-  return params;
-}
-
 struct PhysicalClimbParams {
   simulator::SceneParams scene;
   PerceptionParams perception;
-  climb_controller::CycleParams cycle = cycle_in_physics();
+  climb_controller::CycleParams cycle = cycle_with_brakes();
   std::vector<WeakRung> weak_rungs;  ///< they look sound
   std::uint64_t seed = 1;
   bool attitude_from_samples = false;  ///< ClimbBoxParams has it

@@ -55,8 +55,7 @@ void Controller::work_put_down(const ControllerInput& input) {
       const bool is_lost = other.state() == LimbState::kSupportLost;
       if (is_lost && other.lost_rung_id() == place.rung_id) return;
     }
-    places[num_places++] = {place.rung_id, T_now_before * place.pregrasp_m,
-                            T_now_before * place.grasp_m};
+    places[num_places++] = moved(T_now_before, place);
   };
   if (limb.home()) offer(*limb.home());
   const bool has_other_goal = !limb.home() || limb.goal().rung_id != limb.home()->rung_id;

@@ -167,6 +167,7 @@ Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,
   const Eigen::Vector3d along_m = rung.end1_m - rung.end0_m;
   if (!(along_m.norm() > claw_.width_m)) return Refusal::kStretchTooShort;
   target.rung_axis = along_m.normalized();
+  target.radius_m = rung.radius_m;
   target.sigma_m =
       std::hypot(sigma_across_m(rung.covariance_m2, target.rung_axis), query.body_sigma_m);
   if (!(target.sigma_m <= params_.max_sigma_m)) return Refusal::kUncertain;

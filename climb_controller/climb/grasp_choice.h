@@ -96,6 +96,7 @@ struct GraspTarget {
   Eigen::Vector3d grasp_m = Eigen::Vector3d::Zero();     ///< odom, on the rung's axis
   Eigen::Vector3d pregrasp_m = Eigen::Vector3d::Zero();  ///< odom, along the claw's opening
   Eigen::Vector3d rung_axis = Eigen::Vector3d::UnitY();  ///< odom, unit, to the robot's left
+  double radius_m = 0.0;                                 ///< of the rung
   double sigma_m = 0.0;
   double cost_m = 0.0;
 };

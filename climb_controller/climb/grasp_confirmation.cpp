@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "climb/grasp_confirmation.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace climb {
@@ -8,6 +9,7 @@ namespace {
 
 // Sums of cycle times reach 0.03 s as 0.0299999..: a hundredth of a cycle is forgiven.
 constexpr double kRounding_s = 1e-4;
+constexpr double kMaxSkew = 0.5;  ///< more is no rung across the claw
 
 double counted(double sum_s, bool goes_on, double dt_s) {
   if (!goes_on) return 0.0;
@@ -27,16 +29,33 @@ std::string check(const ConfirmationParams& p) {
   return "";
 }
 
+JawWindow jaw_window(const ClawParams& claw, const ExpectedRung& rung) {
+  const auto on_rung_rad = [&claw](double radius_m) {
+    return claw.on_rung_rad + claw.jaw_rad_per_m * (radius_m - claw.on_rung_radius_m);
+  };
+  const bool is_known = rung.radius_m > 0.0 && std::isfinite(rung.radius_m);
+  const double radius_m =
+      std::min(is_known ? rung.radius_m : claw.max_rung_radius_m, claw.max_rung_radius_m);
+  const double skew = std::isfinite(rung.skew) ? std::min(std::abs(rung.skew), kMaxSkew) : 0.0;
+  // Pulled at, a thinner one leaves the palm and opens the jaw as one of this radius does (run).
+  const double pulled_radius_m = std::max(radius_m, claw.on_rung_radius_m);
+  const double widest_rad = on_rung_rad(pulled_radius_m + claw.jaw_row_m * skew);
+  JawWindow window;
+  window.high_rad = std::min(widest_rad + claw.on_rung_window_rad, claw.open_rad);
+  // Not known: only an empty claw is told from a full one.
+  window.low_rad = claw.empty_rad;
+  if (is_known) {
+    window.low_rad = std::max(claw.empty_rad, on_rung_rad(radius_m) - claw.on_rung_window_rad);
+  }
+  return window;
+}
+
 GraspConfirmation::GraspConfirmation(const ClawParams& claw, const MotionParams& motion,
                                      const ConfirmationParams& params)
-    : claw_(claw), motion_(motion), params_(params) {
+    : claw_(claw), motion_(motion), params_(params), window_(jaw_window(claw, {})) {
   params_.touch_s -= kRounding_s;
   params_.lost_s -= kRounding_s;
   params_.stuck_s -= kRounding_s;
-}
-
-bool GraspConfirmation::in_window() const {
-  return std::abs(reading_.jaw_rad - claw_.on_rung_rad) <= claw_.on_rung_window_rad;
 }
 
 void GraspConfirmation::update(const ClawReading& reading, double dt_s) {

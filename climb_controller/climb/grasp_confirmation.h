@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Is the rung in the claw? Four witnesses must agree: touch closed for 30 ms (level, not edge), jaw
-// in the rung's window (fully closed = missed), closing torque, and the pull test. Also tells a
-// touch switch that is stuck closed, and witnesses that contradict each other again and again.
+// where this rung's radius stops it (fully closed = missed), closing torque, and the pull test.
+// Also tells a touch switch that is stuck closed, and witnesses that contradict each other again
+// and again.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +30,21 @@ struct ClawReading {
   double jaw_torque_Nm = 0.0;  ///< magnitude counts
 };
 
+/// What the claw is to close on.
+struct ExpectedRung {
+  double radius_m = 0.0;  ///< 0 = not known: anything that the claw can hold
+  double skew = 0.0;      ///< tangent between rung and claw, in the plane that the jaw closes in
+};
+
+struct JawWindow {
+  double low_rad = 0.0;
+  double high_rad = 0.0;
+  bool holds(double jaw_rad) const { return jaw_rad >= low_rad && jaw_rad <= high_rad; }
+};
+
+/// Where the jaw stands on such a rung.
+JawWindow jaw_window(const ClawParams& claw, const ExpectedRung& rung);
+
 struct PullResult {
   double slip_m = 0.0;  ///< of the foot, back from the ladder
   double force_N = 0.0;
@@ -50,6 +66,9 @@ class GraspConfirmation {
  public:
   GraspConfirmation(const ClawParams& claw, const MotionParams& motion,
                     const ConfirmationParams& params);
+
+  /// From now on; until told, nothing is known of the rung.
+  void expect(const ExpectedRung& rung) { window_ = jaw_window(claw_, rung); }
 
   /// Each cycle. Readings that are not finite witness against.
   void update(const ClawReading& reading, double dt_s);
@@ -82,11 +101,12 @@ class GraspConfirmation {
   }
 
  private:
-  bool in_window() const;
+  bool in_window() const { return window_.holds(reading_.jaw_rad); }
 
   ClawParams claw_;
   MotionParams motion_;
   ConfirmationParams params_;
+  JawWindow window_;
   ClawReading reading_;
   double touch_s_ = 0.0;
   double open_s_ = 0.0;

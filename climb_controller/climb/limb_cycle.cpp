@@ -27,7 +27,10 @@ void LimbCycle::reset(const LimbInput& measured, bool holds) {
   target_ = {measured.angles_rad, LegAngles::Zero(), measured.claw.jaw_rad, holds ? 1.0 : 0.0};
   jaw_goal_rad_ = holds ? claw_.closed_rad : measured.claw.jaw_rad;  // nothing opens unasked
   moves_ = parks_ = wants_goal_ = returned_ = failed_ = is_jaw_forced_ = false;
-  if (!holds) held_rung_id_ = -1;
+  if (!holds) {
+    held_rung_id_ = -1;
+    goal_ = {};
+  }
   home_.reset();
   way_out_m_.reset();
   num_tries_ = 0;
@@ -42,9 +45,9 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   const bool is_free = state_ == S::kPregrasp && !moves_;
   const bool may_begin = !failed_ && (state_ == S::kLoaded || is_free);
   if (!may_begin) return false;
+  follow_body();
   remember_home();
   goal_ = goal;
-  T_odom_body_ = input_.T_odom_body;
   moves_ = true;
   returned_ = false;
   way_out_m_.reset();
@@ -71,7 +74,7 @@ void LimbCycle::remember_home() {
   const Eigen::Vector3d held_m = kinematics_.foot_m(leg_, input_.angles_rad);
   const Eigen::Vector3d out_m =
       motion_.pregrasp_m * kinematics_.retract_direction(leg_, input_.angles_rad);
-  home_ = LimbGoal{held_rung_id_, held_m + out_m, held_m};
+  home_ = LimbGoal{held_rung_id_, held_m + out_m, held_m, goal_.radius_m, goal_.axis};
 }
 
 bool LimbCycle::take(LimbEvent event) {
@@ -162,6 +165,7 @@ void LimbCycle::enter(LimbState from) {
 void LimbCycle::step(const LimbInput& input) {
   input_ = input;
   input_.stop = input.stop || failed_;  // it stays where it found nothing
+  confirmation_.expect(expected_rung(input));
   confirmation_.update(input.claw, input.dt_s);
   if (moves_ && !input_.stop) spent_s_ += input.dt_s;
   if (!input_.stop) in_state_s_ += input.dt_s;

@@ -23,7 +23,12 @@ struct LimbGoal {
   int rung_id = -1;
   Eigen::Vector3d pregrasp_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d grasp_m = Eigen::Vector3d::Zero();
+  double radius_m = 0.0;                            ///< of the rung; 0 = not known
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< of the rung, unit
 };
+
+/// The same place, told in another frame.
+LimbGoal moved(const Eigen::Isometry3d& T_to_from, const LimbGoal& goal);
 
 struct LimbInput {
   LegAngles angles_rad = LegAngles::Zero();  ///< measured
@@ -149,6 +154,7 @@ class LimbCycle {
   void yield(const LimbInput& input);
   void load(const LimbInput& input, bool arrived);
   Eigen::Vector3d rung_force_N(const LimbInput& input) const;
+  ExpectedRung expected_rung(const LimbInput& input) const;
 
   LegKinematics kinematics_;
   LegLimits limits_;

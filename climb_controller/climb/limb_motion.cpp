@@ -36,6 +36,14 @@ std::string check(const LimbParams& p) {
   return "";
 }
 
+LimbGoal moved(const Eigen::Isometry3d& T_to_from, const LimbGoal& goal) {
+  LimbGoal there = goal;
+  there.pregrasp_m = T_to_from * goal.pregrasp_m;
+  there.grasp_m = T_to_from * goal.grasp_m;
+  there.axis = T_to_from.linear() * goal.axis;
+  return there;
+}
+
 void LimbCycle::follow(const JointSample& sample, double rate) {
   if (state_ != LimbState::kLoaded) return;
   target_.angles_rad = sample.angles_rad;
@@ -121,13 +129,21 @@ Eigen::Vector3d LimbCycle::aimed_m(const Eigen::Vector3d& point_m) const {
 void LimbCycle::follow_body() {
   const Eigen::Isometry3d T_now_before = input_.T_odom_body.inverse() * T_odom_body_;
   T_odom_body_ = input_.T_odom_body;
-  const auto put_right = [&](LimbGoal& goal) {
-    goal.pregrasp_m = T_now_before * goal.pregrasp_m;
-    goal.grasp_m = T_now_before * goal.grasp_m;
-  };
-  put_right(goal_);
-  if (home_) put_right(*home_);
+  goal_ = moved(T_now_before, goal_);
+  if (home_) home_ = moved(T_now_before, *home_);
   if (way_out_m_) way_out_m_ = T_now_before * *way_out_m_;
+}
+
+ExpectedRung LimbCycle::expected_rung(const LimbInput& input) const {
+  // What is let go is the old rung still.
+  const bool is_on_old = state_ == LimbState::kUnloading || state_ == LimbState::kReleasing;
+  const LimbGoal& rung = is_on_old && home_ ? *home_ : goal_;
+  // An abducted leg's claw stands aslant on its rung: that opens the jaw as a thicker one would.
+  const Eigen::Matrix3d R_now_before =
+      input.T_odom_body.linear().transpose() * T_odom_body_.linear();
+  const Eigen::Vector3d axis_claw =
+      kinematics_.R_body_claw(leg_, input.angles_rad).transpose() * (R_now_before * rung.axis);
+  return {rung.radius_m, axis_claw.z() / axis_claw.y()};
 }
 
 void LimbCycle::stand_at(const LegAngles& angles_rad) {

@@ -11,8 +11,15 @@ struct Relation {
   const char* words;
 };
 
+constexpr double kLeastClosing_rad = 0.02;  ///< between an empty jaw's stop and what counts as full
+
 bool in(double value, double low, double high) {  // false for NaN
   return value >= low && value <= high;
+}
+
+double widest_rad(const ClawParams& p) {
+  return p.on_rung_rad + p.jaw_rad_per_m * (p.max_rung_radius_m - p.on_rung_radius_m) +
+         p.on_rung_window_rad;
 }
 
 std::string first_violated(std::span<const Relation> relations, const char* where) {
@@ -39,10 +46,15 @@ std::string check(const ClawParams& p) {
       {in(p.width_m, 0.001, 0.2), "width_m must be 0.001..0.2"},
       {in(p.closed_rad, -3.2, 3.2), "closed_rad must be -3.2..3.2"},
       {in(p.on_rung_rad, p.closed_rad, 3.2), "on_rung_rad must be closed_rad..3.2"},
-      {in(p.on_rung_window_rad, 0.0, p.on_rung_rad - p.closed_rad),
-       "on_rung_window_rad must be 0..on_rung_rad - closed_rad: an empty claw must not look full"},
-      {in(p.open_rad, p.on_rung_rad + p.on_rung_window_rad, 3.2),
-       "open_rad must be on_rung_rad + on_rung_window_rad..3.2"},
+      {in(p.empty_rad, p.closed_rad + kLeastClosing_rad, p.on_rung_rad),
+       "empty_rad must be closed_rad + 0.02..on_rung_rad: an empty claw must not look full"},
+      {in(p.on_rung_radius_m, p.min_rung_radius_m, p.max_rung_radius_m),
+       "on_rung_radius_m must be min_rung_radius_m..max_rung_radius_m"},
+      {in(p.jaw_rad_per_m, 0.0, 1000.0), "jaw_rad_per_m must be 0..1000"},
+      {in(p.jaw_row_m, 0.0, 0.5 * p.width_m), "jaw_row_m must be 0..half of width_m"},
+      {in(p.on_rung_window_rad, 0.0, 1.0), "on_rung_window_rad must be 0..1"},
+      {in(p.open_rad, widest_rad(p), 3.2),
+       "open_rad must be beyond what the thickest rung asks for..3.2"},
       {in(p.capture_m, 0.001, 0.1), "capture_m must be 0.001..0.1"},
       {in(p.seat_up_m, -0.05, 0.05), "seat_up_m must be -0.05..0.05"},
       {in(p.seat_out_m, -0.05, 0.05), "seat_out_m must be -0.05..0.05"},

@@ -25,15 +25,20 @@ struct ClawParams {
   double width_m = 0.034;       ///< along the rung (run)
   double open_rad = 1.2;        ///< (run)
   double closed_rad = -0.60;    ///< closing target; the jaw's stop, reached only when empty (run)
-  double on_rung_rad = -0.465;  ///< jaw angle on a rung of 27 mm (run)
-  double on_rung_window_rad =
-      0.105;                         ///< a grasp reads on_rung within this (run: 25..30 mm, pulled)
-  double capture_m = 0.015;          ///< a rung axis nearer to the foot than this is caught (run)
-  double seat_up_m = 0.006;          ///< where a settled rung's axis lies, above the foot's point
-  double seat_out_m = 0.003;         ///< ... and further in: finger and palm touch it (run: 27 mm)
-  double min_rung_radius_m = 0.010;  ///< (run: 22 mm rungs, less 1 mm of measuring error)
-  double max_rung_radius_m = 0.021;  ///< (run: 40 mm rungs, and 1 mm)
-  double holding_torque_Nm = 3.2;    ///< of the jaw on a rung (run)
+  double empty_rad = -0.57;     ///< a jaw closed further has missed: thinner than 23 mm (run)
+  double on_rung_rad = -0.447;  ///< jaw angle on a rung of this radius (run)
+  double on_rung_radius_m = 0.0135;  ///< (run)
+  double jaw_rad_per_m = 60.0;       ///< ... and per radius more (run: within 0.02 rad, 24..40 mm)
+  double jaw_row_m = 0.012;  ///< fingers stand so far beside the middle: a rung aslant is thicker
+  /// A grasp reads what the rung's radius asks for within this (run: pulled at with 100 N it opens
+  /// by up to 0.1 rad; a radius told 1.5 mm wrong is 0.09).
+  double on_rung_window_rad = 0.16;
+  double capture_m = 0.015;           ///< a rung axis nearer to the foot than this is caught (run)
+  double seat_up_m = 0.006;           ///< where a settled rung's axis lies, above the foot's point
+  double seat_out_m = 0.003;          ///< ... and further in: finger and palm touch it (run: 27 mm)
+  double min_rung_radius_m = 0.0115;  ///< on thinner ones the jaw looks empty (run)
+  double max_rung_radius_m = 0.021;   ///< (run: 40 mm rungs, and 1 mm)
+  double holding_torque_Nm = 3.2;     ///< of the jaw on a rung (run)
   double min_closing_torque_Nm = 0.5;  ///< below: the jaw touches nothing (run)
   double max_torque_Nm = 6.0;          ///< of the jaw's drive (run)
   double max_velocity_rad_s = 6.0;     ///< of the jaw (own)

@@ -270,8 +270,9 @@ PlannedStep StepPlanner::choose(GraspQuery query, const RobotNow& now, const Lad
   step.ready = decision.refusal == Refusal::kNone;
   if (step.ready) {
     const Eigen::Isometry3d T_body_odom = query.T_odom_body.inverse();
-    step.goal = {decision.target.rung_id, T_body_odom * decision.target.pregrasp_m,
-                 T_body_odom * decision.target.grasp_m};
+    const GraspTarget& target = decision.target;
+    step.goal = moved(T_body_odom, {target.rung_id, target.pregrasp_m, target.grasp_m,
+                                    target.radius_m, target.rung_axis});
   }
   return step;
 }

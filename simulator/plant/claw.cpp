@@ -19,8 +19,8 @@ const char* name(LossCause cause) {
 }
 
 double Claw::contact_rad(double rung_radius_m) const {
-  const double opening_rad = params_.on_rung_rad - params_.stop_rad;
-  return params_.stop_rad + opening_rad * rung_radius_m / params_.on_rung_radius_m;
+  const double wider_m = rung_radius_m - params_.on_rung_radius_m;
+  return std::max(params_.stop_rad, params_.on_rung_rad + params_.jaw_rad_per_m * wider_m);
 }
 
 double Claw::press_Nm(double jaw_target_rad) const {

@@ -15,8 +15,9 @@ namespace simulator {
 struct ClawParams {
   double open_rad = 1.2;
   double stop_rad = -0.60;     ///< closed and empty
-  double on_rung_rad = -0.44;  ///< on a rung of this radius
+  double on_rung_rad = -0.42;  ///< on a rung of this radius (run)
   double on_rung_radius_m = 0.014;
+  double jaw_rad_per_m = 60.0;         ///< ... and per radius more (run: 24..40 mm)
   double capture_m = 0.015;            ///< a rung axis nearer to the foot is caught
   double play_m = 0.005;               ///< clearance of the claw about the rung
   double jaw_stiffness_Nm_rad = 20.0;  ///< torque per angle closed beyond contact

@@ -29,8 +29,8 @@ TEST(ClimbParams, NamesTheViolatedField) {
   EXPECT_NE(words_after([](auto& p) { p.robot.knee_bend.min_rad = -0.1; }).find("knee_bend"),
             std::string::npos);
   EXPECT_NE(words_after([](auto& p) {
-              p.robot.claw.on_rung_window_rad = 0.2;
-            }).find("robot.claw.on_rung_window_rad"),
+              p.robot.claw.empty_rad = p.robot.claw.closed_rad;
+            }).find("robot.claw.empty_rad"),
             std::string::npos);
   EXPECT_NE(words_after([](auto& p) { p.robot.mass.torso_kg = 0.0; }).find("mass.torso_kg"),
             std::string::npos);

@@ -65,6 +65,67 @@ TEST_F(Confirmation, RefusesWithOneAgainst) {
   }
 }
 
+// Each rung that the claw can hold asks for its own jaw angle: told its radius, within 1.5 mm, a
+// jaw that stands there is on it, also pulled at (the numbers of the simulated claw); one that
+// stands as on a rung 10 mm thicker is not.
+TEST_F(Confirmation, ExpectsTheRungsThickness) {
+  struct Measured {
+    double diameter_m;
+    double at_rest_rad;
+    double pulled_rad;
+  };
+  constexpr Measured kMeasured[] = {{0.024, -0.544, -0.445},
+                                    {0.027, -0.450, -0.437},
+                                    {0.030, -0.361, -0.343},
+                                    {0.034, -0.238, -0.208},
+                                    {0.040, -0.037, -0.009}};
+  for (const Measured& m : kMeasured) {
+    for (const double error_m : {-0.0015, 0.0, 0.0015}) {
+      claw_.expect({0.5 * m.diameter_m + error_m, 0.0});
+      for (const double jaw_rad : {m.at_rest_rad, m.pulled_rad}) {
+        show({true, jaw_rad, -3.2}, 5);
+        EXPECT_TRUE(claw_.conclude(kFirm).all()) << m.diameter_m << ' ' << error_m;
+      }
+    }
+    claw_.expect({0.5 * m.diameter_m, 0.0});
+    show({true, m.at_rest_rad + 0.3, -3.2}, 5);
+    EXPECT_FALSE(claw_.conclude(kFirm).all()) << m.diameter_m;
+  }
+}
+
+// A rung that lies aslant in the claw opens it wider (as measured), whichever way it leans.
+TEST_F(Confirmation, ExpectsARungAslant) {
+  for (const double skew : {-0.12, 0.12}) {
+    const JawWindow straight = jaw_window(kClaw, {0.014, 0.0});
+    const JawWindow aslant = jaw_window(kClaw, {0.014, skew});
+    EXPECT_NEAR(aslant.high_rad - straight.high_rad, 0.078, 0.015);
+    EXPECT_EQ(aslant.low_rad, straight.low_rad);
+  }
+}
+
+// An empty claw, whose jaw stands at its stop or a little before it, is full on no rung, whatever
+// was told of it; nor is an open one.
+TEST_F(Confirmation, AnEmptyClawIsNeverFull) {
+  for (const double radius_m : {0.0, 0.001, 0.0115, 0.014, 0.021, 0.05, -1.0, kNan, kInfinity}) {
+    for (const double skew : {0.0, 0.3, -5.0, kNan, kInfinity}) {
+      claw_.expect({radius_m, skew});
+      for (const double jaw_rad : {-0.65, kClaw.closed_rad, kClaw.empty_rad - 0.001, 1.1, 1.2}) {
+        show({true, jaw_rad, -6.0}, 5);
+        EXPECT_FALSE(claw_.witness().jaw) << radius_m << ' ' << skew << ' ' << jaw_rad;
+        EXPECT_FALSE(claw_.conclude(kFirm).all());
+      }
+    }
+  }
+}
+
+// Of a rung that nobody has seen every thickness will do that the claw can hold.
+TEST_F(Confirmation, HoldsAnyRungThatNobodySaw) {
+  for (const double jaw_rad : {-0.56, -0.45, -0.2, -0.03}) {
+    show({true, jaw_rad, -3.2}, 5);
+    EXPECT_TRUE(claw_.conclude(kFirm).all()) << jaw_rad;
+  }
+}
+
 // A plain miss is no contradiction; touch without a rung in the jaw is, three times in a row.
 TEST_F(Confirmation, CountsContradictions) {
   show(kEmpty, 50);

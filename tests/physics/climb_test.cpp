@@ -43,12 +43,16 @@ TEST(PhysicalClimb, HangsOnFourClaws) {
   EXPECT_NEAR(down_N, 9.81 * mj_getTotalmass(&climb.model().model()), 5.0);
 }
 
-/// The thickest rungs of the scenes open the jaw widest, and are grasped all the same.
-TEST(PhysicalClimb, HangsOnThickRungs) {
-  PhysicalClimbParams params = ladder(5);
-  params.scene.rung_diameter_m = 0.030;
-  PhysicalClimb climb(params);
-  EXPECT_TRUE(climb.hang()) << climb.reason();
+/// The jaw stands where the rung's thickness has it: thin and thick ones are grasped, nothing
+/// fails.
+TEST(PhysicalClimb, HangsOnThinAndThickRungs) {
+  for (const double diameter_m : {0.024, 0.030, 0.036}) {
+    PhysicalClimbParams params = ladder(5);
+    params.scene.rung_diameter_m = diameter_m;
+    PhysicalClimb climb(params);
+    EXPECT_TRUE(climb.hang()) << diameter_m << ' ' << climb.reason();
+    EXPECT_EQ(climb.figures().grasps_failed, 0) << diameter_m;
+  }
 }
 
 /// Rungs seen 5 mm, another 3 mm in each message and 1 degree off are climbed to the top, with
