@@ -9,35 +9,34 @@ Moments::Moments(const GrowingParams& params, int num_slots)
     : gate_m2_(params.moment_gate_m * params.moment_gate_m),
       forget_(params.moment_forget),
       min_weight_(params.min_moment_weight),
-      sums_(num_slots) {}
+      sums_(index(num_slots, 0) + 1) {}
 
 void Moments::clear() {
-  std::fill(sums_.begin(), sums_.end(), std::array<Sums, kNumHeads>{});
+  std::fill(sums_.begin(), sums_.end(), Sums{});
 }
 
 void Moments::clear(int slot) {
-  sums_[slot] = {};
+  std::fill_n(&sums_[index(slot, 0)], kNumHeads, Sums{});
 }
 
 void Moments::forget() {
-  for (auto& heads : sums_) {
-    for (Sums& sums : heads) {
-      if (sums.weight == 0.0) continue;
-      for (double* value : {&sums.weight, &sums.x_m, &sums.y_m, &sums.z_m, &sums.xx_m2, &sums.xy_m2,
-                            &sums.xz_m2, &sums.yy_m2, &sums.yz_m2, &sums.zz_m2}) {
-        *value *= forget_;
-      }
-      if (sums.weight < min_weight_) sums = {};
+  for (Sums& sums : sums_) {
+    if (sums.weight == 0.0) continue;
+    for (double* value : {&sums.weight, &sums.x_m, &sums.y_m, &sums.z_m, &sums.xx_m2, &sums.xy_m2,
+                          &sums.xz_m2, &sums.yy_m2, &sums.yz_m2, &sums.zz_m2}) {
+      *value *= forget_;
     }
+    if (sums.weight < min_weight_) sums = {};
   }
 }
 
 void Moments::add(int slot, int head, const Eigen::Vector3f& point_m, float distance_m2) {
-  if (!(distance_m2 < gate_m2_) || head < 0 || head >= kNumHeads) return;
+  if (head < 0 || head >= kNumHeads) return;
   const double x = point_m.x();
   const double y = point_m.y();
   const double z = point_m.z();
-  Sums& sums = sums_[slot][head];
+  // Nobody could predict whether a point counts: rather than branch, sum the others up elsewhere.
+  Sums& sums = sums_[distance_m2 < gate_m2_ ? index(slot, head) : sums_.size() - 1];
   sums.weight += 1.0;
   sums.x_m += x;
   sums.y_m += y;
@@ -52,7 +51,7 @@ void Moments::add(int slot, int head, const Eigen::Vector3f& point_m, float dist
 
 void Moments::add(std::span<const Signal> signals, const Winners* winners) {
   for (std::size_t i = 0; i < signals.size(); ++i) {  // all asked for before the first is needed
-    const Sums& sums = sums_[winners[i].first][signals[i].head & (kNumHeads - 1)];
+    const Sums& sums = sums_[index(winners[i].first, signals[i].head & (kNumHeads - 1))];
     __builtin_prefetch(&sums);
     __builtin_prefetch(&sums.zz_m2);
   }
@@ -64,7 +63,7 @@ void Moments::add(std::span<const Signal> signals, const Winners* winners) {
 
 void Moments::append(int slot, int node, std::vector<Moment>& moments) const {
   for (int head = 0; head < kNumHeads; ++head) {
-    const Sums& sums = sums_[slot][head];
+    const Sums& sums = sums_[index(slot, head)];
     if (sums.weight == 0.0) continue;
     const double x = sums.x_m / sums.weight;
     const double y = sums.y_m / sums.weight;

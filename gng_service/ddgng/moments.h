@@ -45,7 +45,11 @@ class Moments {
   float gate_m2_;
   double forget_;
   double min_weight_;
-  std::vector<std::array<Sums, kNumHeads>> sums_;
+  std::size_t index(int slot, int head) const {
+    return static_cast<std::size_t>(slot) * kNumHeads + static_cast<std::size_t>(head);
+  }
+
+  std::vector<Sums> sums_;  // over slots and heads; the last one is of points that do not count
 };
 
 }  // namespace ddgng

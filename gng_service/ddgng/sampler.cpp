@@ -2,6 +2,7 @@
 #include "ddgng/sampler.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace ddgng {
 namespace {
@@ -10,8 +11,8 @@ namespace {
 constexpr float kReach_m = 1e4F;
 
 bool within_reach(const Eigen::Vector3f& p) {
-  return p.x() >= -kReach_m && p.x() <= kReach_m && p.y() >= -kReach_m && p.y() <= kReach_m &&
-         p.z() >= -kReach_m && p.z() <= kReach_m;
+  const auto is_within = [](float m) { return static_cast<int>(std::abs(m) <= kReach_m); };
+  return (is_within(p.x()) & is_within(p.y()) & is_within(p.z())) != 0;  // one branch, not six
 }
 
 }  // namespace
@@ -30,7 +31,8 @@ Sampler::Sampler(const GrowingParams& params)
 std::span<const Signal> Sampler::fetch(const CloudView& cloud) {
   constexpr std::size_t kAhead = 24;
   const std::size_t num_drawn = drawn_.size();
-  signals_.clear();
+  signals_.resize(num_drawn);
+  std::size_t num_signals = 0;
   for (std::size_t i = 0; i < num_drawn; ++i) {
     const std::uint32_t ahead = drawn_[std::min(i + kAhead, num_drawn - 1)];
     __builtin_prefetch(&cloud.x_m[ahead]);
@@ -38,17 +40,19 @@ std::span<const Signal> Sampler::fetch(const CloudView& cloud) {
     __builtin_prefetch(&cloud.z_m[ahead]);
     __builtin_prefetch(&cloud.head[ahead]);
     const std::uint32_t index = drawn_[i];
-    const Signal signal{{cloud.x_m[index], cloud.y_m[index], cloud.z_m[index]}, cloud.head[index]};
-    if (within_reach(signal.position_m)) signals_.push_back(signal);
+    Signal& signal = signals_[num_signals];
+    signal = {{cloud.x_m[index], cloud.y_m[index], cloud.z_m[index]}, cloud.head[index]};
+    num_signals += within_reach(signal.position_m) ? 1 : 0;
   }
+  signals_.resize(num_signals);
   return signals_;
 }
 
 std::span<const Signal> Sampler::draw_uniform(const CloudView& cloud, int num_signals) {
-  drawn_.clear();
   const auto num_points = static_cast<std::uint32_t>(cloud.size());
   if (num_points == 0) return {};
-  for (int i = 0; i < num_signals; ++i) drawn_.push_back(rng_.below(num_points));
+  drawn_.resize(num_signals);
+  for (std::uint32_t& index : drawn_) index = rng_.below(num_points);
   return fetch(cloud);
 }
 
@@ -56,19 +60,21 @@ std::span<const Signal> Sampler::draw(const CloudView& cloud,
                                       std::span<const std::uint32_t> suspected) {
   const int num_signals = num_uniform_ + num_attention_;
   if (suspected.empty()) return draw_uniform(cloud, num_signals);
-  drawn_.clear();
   const auto num_points = static_cast<std::uint32_t>(cloud.size());
   const auto num_suspected = static_cast<std::uint32_t>(suspected.size());
+  base::Rng rng = rng_;  // a copy that nothing else can reach is kept in registers
+  drawn_.resize(num_signals);
   int owed = 0;  // uniform draws, in units of 1 / num_signals
-  for (int i = 0; i < num_signals; ++i) {
+  for (std::uint32_t& index : drawn_) {
     owed += num_uniform_;
     if (owed >= num_signals) {
       owed -= num_signals;
-      drawn_.push_back(rng_.below(num_points));
+      index = rng.below(num_points);
     } else {
-      drawn_.push_back(suspected[rng_.below(num_suspected)]);
+      index = suspected[rng.below(num_suspected)];
     }
   }
+  rng_ = rng;
   return fetch(cloud);
 }
 
