@@ -65,7 +65,7 @@ class Extremes {
 
  private:
   void mark(int slot) {
-    const int block = slot / kBlock;
+    const int block = static_cast<int>(static_cast<unsigned>(slot) / kBlock);
     if (is_touched_[block] != 0) return;
     is_touched_[block] = 1;
     touched_.push_back(block);

@@ -54,14 +54,16 @@ HWY_INLINE void Find(GrowingState& state, Ahead& ahead) {
   ahead.changes = state.search.changes();
 }
 
-/// How far the moved nodes were from the signal on each axis, and how far beyond their reach they
-/// are now: the largest values.
+/// Of the nodes that were moved, the largest: distance from the signal on each axis before;
+/// distance beyond their reach now; age of the winner's edge to them.
 struct Moves {
   HWY_ALIGN float off_m[4] = {};
   HWY_ALIGN float beyond_m[4] = {};
+  int oldest_age = 0;
 };
 
-/// Moves the winner and its neighbours a part of the way to the signal.
+/// Moves the winner and its neighbours a part of the way to the signal. The ages are looked at on
+/// the way: a loop of their own would end as unpredictably as this one.
 HWY_INLINE Moves MoveAll(GrowingState& state, const Graph::Links& links, const Query& query) {
   const int s1 = query.winners.first;
   CellGrid::Place* const places = state.search.grid().places();
@@ -92,6 +94,7 @@ HWY_INLINE Moves MoveAll(GrowingState& state, const Graph::Links& links, const Q
       cell.z_m[place.lane] = z_m;
       if (k == degree) break;
       rate = hn::Set(d, state.params.neighbour_rate);
+      moves.oldest_age = std::max(moves.oldest_age, state.graph.age(s1, k));
     }
     hn::Store(off, d, moves.off_m + i);
     hn::Store(beyond, d, moves.beyond_m + i);
@@ -140,17 +143,7 @@ HWY_INLINE void Join(GrowingState& state, int s1, int s2) {
       static_cast<std::uint16_t>(wins[s1] + wins[s2]);
 }
 
-/// Asks for the memory that a signal with these winners will change, while the next search runs.
-HWY_INLINE void PrefetchNeighbours(const GrowingState& state, int s1) {
-  const Graph::Links& links = state.graph.links(s1);
-  HWY_UNROLL(8)
-  for (int k = 0; k < 8; ++k) {  // more are rare; beyond the degree it is some place or none
-    const int j = links.neighbour[k] & Graph::kNodeLimit;
-    hwy::Prefetch(state.search.grid().places() + j);
-    hwy::Prefetch(state.graph.positions() + j);
-  }
-}
-
+/// Asks for memory that a signal with these winners will change.
 HWY_INLINE void PrefetchLinks(const GrowingState& state, const Winners& winners) {
   for (const int slot : {winners.first, winners.second}) {
     hwy::Prefetch(state.graph.links(slot).neighbour.data());
@@ -159,10 +152,10 @@ HWY_INLINE void PrefetchLinks(const GrowingState& state, const Winners& winners)
   hwy::Prefetch(state.search.grid().places() + winners.first);
 }
 
-/// What a signal does to the graph but for the moves. Returns the age of its oldest edge.
-HWY_INLINE int Learn(GrowingState& state, const Winners& winners) {
+/// What a signal does to the graph but for the moves and to edges that are too old.
+HWY_INLINE void Learn(GrowingState& state, const Winners& winners) {
   const int s1 = winners.first;
-  // The new edge is made after the others aged, so it starts at 0 and cannot be too old below.
+  // The new edge is made after the others aged, so it starts at 0 and cannot be too old.
   state.graph.age_edges(s1);
   Join(state, s1, winners.second);
   state.error[s1] += state.error_decay.stored(winners.first_m2);
@@ -170,25 +163,15 @@ HWY_INLINE int Learn(GrowingState& state, const Winners& winners) {
   state.extremes.touch_risen(s1, state.error[s1]);
   state.error_decay.next_signal();
   for (Decay& decay : state.utility_decay) decay.next_signal();
-
-  const Graph::Links& links = state.graph.links(s1);
-  const std::uint16_t* const wins = state.graph.wins();
-  int oldest = 0;
-  for (int k = 0; k < links.degree; ++k) {
-    const auto age =
-        static_cast<std::uint16_t>(wins[s1] + wins[links.neighbour[k]] - links.born[k]);
-    oldest = std::max(oldest, static_cast<int>(age));
-  }
-  return oldest;
 }
 
 /// One signal; the search for the next has run already and is repeated where this one disturbs it.
 HWY_INLINE void LearnAndMove(GrowingState& state, const Query& query, Ahead& next) {
   const int s1 = query.winners.first;
-  const int oldest = Learn(state, query.winners);
+  Learn(state, query.winners);
   const Moves moves = MoveAll(state, state.graph.links(s1), query);
   if (HWY_UNLIKELY(IsBeyond(moves.beyond_m))) TellMoves(state, s1);
-  if (HWY_UNLIKELY(oldest > state.params.max_edge_age)) state.remove_old_edges(s1);
+  if (HWY_UNLIKELY(moves.oldest_age > state.params.max_edge_age)) state.remove_old_edges(s1);
   if (!next.found) return;
   if (HWY_UNLIKELY(MayDisturb(query, moves, next.query)) ||
       HWY_UNLIKELY(next.changes != state.search.changes())) {
@@ -215,7 +198,6 @@ void Signals(GrowingState& state, std::span<const Signal> signals, std::size_t n
     Ahead& now = ahead(i);
     Ahead& next = ahead(i + 1);
     next.found = false;
-    PrefetchNeighbours(state, now.query.winners.first);
     if (i + 2 < signals.size()) ListCellsOf(state, signals[i + 2], ahead(i + 2));
     if (i + 1 < signals.size()) {
       Find(state, next);
@@ -237,12 +219,12 @@ void SignalsLinearly(GrowingState& state, std::span<const Signal> signals, std::
     const Eigen::Vector3f& signal_m = signals[i].position_m;
     winners[i] = nearest_two_linear(state.graph, signal_m);
     const int s1 = winners[i].first;
-    const int oldest = Learn(state, winners[i]);
+    Learn(state, winners[i]);
     state.graph.move_towards(s1, signal_m, state.params.winner_rate);
     for (const int j : state.graph.neighbours(s1)) {
       state.graph.move_towards(j, signal_m, state.params.neighbour_rate);
     }
-    if (HWY_UNLIKELY(oldest > state.params.max_edge_age)) state.remove_old_edges(s1);
+    state.remove_old_edges(s1);
     if (HWY_UNLIKELY(state.shrink_due())) state.shrink();
   }
   state.counts.signals += static_cast<std::int64_t>(num);
