@@ -64,9 +64,11 @@ std::array<int, 3> CellGrid::set_reach(Place& place, const Eigen::Vector3f& posi
   const Level& finer = levels_[0].side_m < levels_[1].side_m ? levels_[0] : levels_[1];
   std::array<int, 3> cell{};
   for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = floor_to_int(position_m[axis] * own.per_side);
-    const int part = floor_to_int(position_m[axis] * finer.per_side);
-    const auto low = [](const Level& level, int c) { return static_cast<float>(c) * level.side_m; };
+    cell[axis] = floor_to_int(in_sides(position_m[axis], own.per_side, axis));
+    const int part = floor_to_int(in_sides(position_m[axis], finer.per_side, axis));
+    const auto low = [axis](const Level& level, int c) {
+      return (static_cast<float>(c) - kShift[axis]) * level.side_m;
+    };
     const float low_m = std::max(low(own, cell[axis]), low(finer, part));
     const float high_m = std::min(low(own, cell[axis] + 1), low(finer, part + 1));
     place.center_m[axis] = 0.5F * (low_m + high_m);

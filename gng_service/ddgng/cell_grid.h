@@ -72,6 +72,9 @@ class CellGrid {
   /// while coordinates are below kMaxSides).
   static constexpr float kSlack = 2e-3F;
   static constexpr float kMaxSides = 4000.0F;
+  /// Cells do not begin at 0 but these parts of a side before, for x, y, z: a floor at height 0
+  /// with its noise lies within one layer of cells, not on the border of two.
+  alignas(16) static constexpr std::array<float, 4> kShift = {0.0F, 0.0F, 0.25F, 0.0F};
 
   explicit CellGrid(int num_slots);
 
@@ -97,7 +100,9 @@ class CellGrid {
   Cell* cells() { return cells_.data(); }
   Place* places() { return places_.data(); }
 
-  /// Cell coordinate of a coordinate in cell sides, |f| < 2^31.
+  /// Coordinate in cell sides; its floor is the cell's coordinate.
+  static float in_sides(float m, float per_side, int axis) { return m * per_side + kShift[axis]; }
+  /// |f| < 2^31.
   static int floor_to_int(float f) {
     const int whole = static_cast<int>(f);
     return static_cast<float>(whole) > f ? whole - 1 : whole;

@@ -45,7 +45,7 @@ HWY_INLINE void ListCellsOf(const GrowingState& state, const Signal& signal, Ahe
               &ahead.query.signal_m.x_m + i);
   }
   ahead.found = false;
-  ListCells(state.search.grid(), ahead.query);
+  ListCells(state.search, ahead.query);
 }
 
 HWY_INLINE void Find(GrowingState& state, Ahead& ahead) {

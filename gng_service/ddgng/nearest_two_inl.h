@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include <hwy/highway.h>
 
@@ -23,20 +25,38 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kBorderSlack = CellGrid::kSlack + Occupancy::kSlack;  // of a side
 
+/// A point in cell sides, from this axis on.
+template <class D>
+HWY_INLINE hn::Vec<D> InSides(D d, const Graph::Position& point_m, int axis, float per_side) {
+  return hn::Add(hn::Mul(hn::Load(d, &point_m.x_m + axis), hn::Set(d, per_side)),
+                 hn::Load(d, CellGrid::kShift.data() + axis));
+}
+
+/// Adds the cells in which those listed go on.
+inline HWY_NOINLINE void ListNext(const CellGrid& grid, Query& query) {
+  for (int i = 0; i < query.num_cells; ++i) {
+    query.cells[i] &= CellGrid::kIndex;
+    const std::uint16_t next = grid.cells()[query.cells[i]].next;
+    if (next == 0) continue;
+    query.crowded = query.num_cells == Query::kBlockCells;
+    if (query.crowded) return;
+    query.cells[query.num_cells++] = next;
+  }
+}
+
 /// Lists the cells that hold nodes among the 2 x 2 x 2 of one level round the cell corner that is
 /// nearest to the signal. A signal beyond the reach of exact cells proves nothing (border 0).
 HWY_INLINE void ListBlock(const CellGrid& grid, int index, Query& query) {
   const CellGrid::Level& level = grid.level(index);
   const hn::CappedTag<float, 4> d;
   const hn::RebindToSigned<decltype(d)> di;
-  HWY_ALIGN std::int32_t corner[4];
   HWY_ALIGN float border[4];
   bool addressable = true;
   for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
-    const auto f = hn::Mul(hn::Load(d, &query.signal_m.x_m + i), hn::Set(d, level.per_side));
+    const auto f = InSides(d, query.signal_m, i, level.per_side);
     const auto low = hn::Floor(hn::Sub(f, hn::Set(d, 0.5F)));
     const auto u = hn::Sub(f, low);
-    hn::Store(hn::ConvertTo(di, low), di, corner + i);
+    hn::Store(hn::ConvertTo(di, low), di, query.corner.data() + i);
     hn::Store(hn::Min(u, hn::Sub(hn::Set(d, 2.0F), u)), d, border + i);
     addressable =
         addressable && hn::AllTrue(d, hn::Lt(hn::Abs(f), hn::Set(d, CellGrid::kMaxSides)));
@@ -45,32 +65,44 @@ HWY_INLINE void ListBlock(const CellGrid& grid, int index, Query& query) {
   const float border_m = addressable ? std::max(0.0F, inner) * level.side_m : 0.0F;
   query.border_m2 = border_m * border_m;
   query.level = index;
-  query.corner = {corner[0], corner[1], corner[2]};
 
-  const std::uint32_t entry = level.entry(corner[0], corner[1], corner[2]);
+  const std::uint32_t entry = level.entry(query.corner[0], query.corner[1], query.corner[2]);
   const std::uint16_t* const table = level.table.data();
   int any = 0;
-  int num = 0;
+  std::size_t num = 0;
   query.cells = {};
-  HWY_UNROLL(8)
-  for (std::uint32_t i = 0; i < Query::kBlockCells;
-       ++i) {  // without branches: empty ones overwrite
+  HWY_UNROLL(8)  // without branches: the next one overwrites an empty one
+  for (std::uint32_t i = 0; i < Query::kBlockCells; ++i) {
     const std::uint32_t off = (i & 1) + (i >> 1 & 1) * level.kPerY + (i >> 2) * level.kPerZ;
     const std::uint16_t first = table[(entry + off) & level.mask];
     query.cells[num] = first;
     num += first != 0 ? 1 : 0;
     any |= first;
   }
-  query.num_cells = num;
-  query.crowded = (any & CellGrid::kGoesOn) != 0;
+  query.num_cells = static_cast<int>(num);
+  query.crowded = false;
+  if (HWY_UNLIKELY((any & CellGrid::kGoesOn) != 0)) ListNext(grid, query);
   query.layout = grid.layout();
 }
 
-/// From the inside's cells where these hold any node, else from the outside's.
-HWY_INLINE void ListCells(const CellGrid& grid, Query& query) {
-  query.num_cells = 0;
-  if (grid.level(1).num_nodes > 0) ListBlock(grid, 1, query);
-  if (query.num_cells == 0) ListBlock(grid, 0, query);
+/// Whether a node of the inside may be in the small cube that holds the signal.
+HWY_INLINE bool MaybeInside(const Occupancy& inside_parts, const Query& query) {
+  const hn::CappedTag<float, 4> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  HWY_ALIGN std::int32_t cube[4];
+  for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
+    const auto f = InSides(d, query.signal_m, i, inside_parts.per_side());
+    hn::Store(hn::ConvertTo(di, hn::Floor(f)), di, cube + i);
+  }
+  return inside_parts.maybe_in_cube(cube[0], cube[1], cube[2]);
+}
+
+/// From the cells of one level, chosen without a branch (which nobody could predict); from those of
+/// the other where they hold no node.
+HWY_INLINE void ListCells(const WinnerSearch& search, Query& query) {
+  const int level = MaybeInside(search.inside_parts(), query) ? 1 : 0;
+  ListBlock(search.grid(), level, query);
+  if (HWY_UNLIKELY(query.num_cells == 0)) ListBlock(search.grid(), 1 - level, query);
 }
 
 /// The lanes of the listed cells that hold a value, a bit each.
@@ -152,13 +184,31 @@ HWY_INLINE bool NearestTwoOfCells(const CellGrid::Cell* cells, Query& query) {
   return NearestTwoOfCells<Query::kBlockCells>(cells, query);
 }
 
-/// The answer when the listed cells could not prove theirs.
+/// The nearest two of four nodes.
+inline Winners Merged(Winners a, Winners b) {
+  const auto before = [](float a_m2, int a_slot, float b_m2, int b_slot) {
+    return a_m2 < b_m2 || (a_m2 == b_m2 && a_slot < b_slot);
+  };
+  if (before(b.first_m2, b.first, a.first_m2, a.first)) std::swap(a, b);
+  if (before(b.first_m2, b.first, a.second_m2, a.second)) {
+    a.second = b.first;
+    a.second_m2 = b.first_m2;
+  }
+  return a;
+}
+
+/// The answer when the listed cells could not prove theirs; their border may have been wide enough.
 inline HWY_NOINLINE void NearestTwoWide(WinnerSearch& search, const Graph& graph, Query& query) {
   float second_m2 = query.winners.second_m2;
+  const bool proved = second_m2 < query.border_m2;  // but for the other level
   if (query.level == 1) {  // near the border of the inside, nodes outside are often nearer
     Query outside = query;
     ListBlock(search.grid(), 0, outside);
     if (!outside.crowded && NearestTwoOfCells(search.grid().cells(), outside)) {
+      if (proved && second_m2 < outside.border_m2) {
+        query.winners = Merged(query.winners, outside.winners);
+        return;
+      }
       second_m2 = std::min(second_m2, outside.winners.second_m2);
     }
   }
@@ -169,7 +219,7 @@ inline HWY_NOINLINE void NearestTwoWide(WinnerSearch& search, const Graph& graph
 /// Needs ListCells(); what has changed since is taken into account.
 HWY_INLINE void NearestTwo(WinnerSearch& search, const Graph& graph, Query& query) {
   const CellGrid& grid = search.grid();
-  if (HWY_UNLIKELY(query.layout != grid.layout())) ListCells(grid, query);
+  if (HWY_UNLIKELY(query.layout != grid.layout())) ListCells(search, query);
   search.count();
   const auto [x_m, y_m, z_m, zero] = query.signal_m;
   const Eigen::Vector3f point_m(x_m, y_m, z_m);
@@ -177,7 +227,7 @@ HWY_INLINE void NearestTwo(WinnerSearch& search, const Graph& graph, Query& quer
     query.winners = search.nearest_two_crowded(query.level, query.corner, point_m);
   }
   const float second_m2 = query.winners.second_m2;
-  const auto [cx, cy, cz] = query.corner;
+  const auto [cx, cy, cz, unused] = query.corner;
   if (HWY_LIKELY(second_m2 < query.border_m2) &&
       (HWY_LIKELY(!search.others_in_block(query.level, cx, cy, cz)) ||
        !search.others_within(query.level, point_m, second_m2))) {

@@ -18,8 +18,9 @@ class Occupancy {
  public:
   explicit Occupancy(int num_nodes) {
     std::size_t num_rows = 1024;
-    while (2 * num_rows < static_cast<std::size_t>(num_nodes)) num_rows *= 2;
+    while (num_rows < static_cast<std::size_t>(num_nodes)) num_rows *= 2;
     rows_.resize(num_rows);
+    while ((per_z_ + 2) * (per_z_ + 2) <= num_rows) per_z_ += 2;
   }
 
   /// Forgets all marks; cubes of this side from now on.
@@ -29,21 +30,28 @@ class Occupancy {
   }
 
   /// A node is within these distances of the centre and stays there, but for a few percent of them.
-  void mark(const Eigen::Vector3f& center_m, const Eigen::Vector3f& reach_m) {
-    const Range x = range(center_m.x(), kMarked * reach_m.x());
-    const Range y = range(center_m.y(), kMarked * reach_m.y());
-    const Range z = range(center_m.z(), kMarked * reach_m.z());
+  /// Whether that was news.
+  bool mark(const Eigen::Vector3f& center_m, const Eigen::Vector3f& reach_m) {
+    const Range x = range(0, center_m.x(), kMarked * reach_m.x());
+    const Range y = range(1, center_m.y(), kMarked * reach_m.y());
+    const Range z = range(2, center_m.z(), kMarked * reach_m.z());
+    bool news = false;
     for (int cz = z.first; cz <= z.last; ++cz) {
-      for (int cy = y.first; cy <= y.last; ++cy) row(cy, cz) |= mask(x);
+      for (int cy = y.first; cy <= y.last; ++cy) {
+        std::uint64_t& cubes = row(cy, cz);
+        news = news || (cubes | mask(x)) != cubes;
+        cubes |= mask(x);
+      }
     }
+    return news;
   }
 
   /// False: no node within this distance of the point on any axis. O((radius / side)^2).
   bool maybe_within(const Eigen::Vector3f& point_m, float radius_m) const {
     const float reach_m = radius_m + kSlack / per_side_;
-    const Range x = range(point_m.x(), reach_m);
-    const Range y = range(point_m.y(), reach_m);
-    const Range z = range(point_m.z(), reach_m);
+    const Range x = range(0, point_m.x(), reach_m);
+    const Range y = range(1, point_m.y(), reach_m);
+    const Range z = range(2, point_m.z(), reach_m);
     if (y.last - y.first >= kMaxWidth || z.last - z.first >= kMaxWidth) return true;
     for (int cz = z.first; cz <= z.last; ++cz) {
       for (int cy = y.first; cy <= y.last; ++cy) {
@@ -53,6 +61,9 @@ class Occupancy {
     return false;
   }
 
+  float per_side() const { return per_side_; }
+  /// False: no node in this cube, except within kSlack of its border.
+  bool maybe_in_cube(int cx, int cy, int cz) const { return (row(cy, cz) & mask({cx, cx})) != 0; }
   /// False: no node in the 2 x 2 x 2 cubes from this one on, except within kSlack of their border.
   bool maybe_in_block(int cx, int cy, int cz) const {
     const std::uint64_t rows =
@@ -70,25 +81,26 @@ class Occupancy {
   struct Range {
     int first = 0, last = 0;
   };
-  Range range(float center_m, float reach_m) const {
-    return {CellGrid::floor_to_int((center_m - reach_m) * per_side_),
-            CellGrid::floor_to_int((center_m + reach_m) * per_side_)};
+  Range range(int axis, float center_m, float reach_m) const {
+    return {CellGrid::floor_to_int(CellGrid::in_sides(center_m - reach_m, per_side_, axis)),
+            CellGrid::floor_to_int(CellGrid::in_sides(center_m + reach_m, per_side_, axis))};
   }
   static std::uint64_t mask(const Range& x) {
     if (x.last - x.first >= 63) return ~std::uint64_t{0};
     const std::uint64_t mask = (std::uint64_t{2} << (x.last - x.first)) - 1;
     return std::rotl(mask, x.first & 63);
   }
-  // A row of 64 cubes along x; rows far apart share a word.
+  // A row of 64 cubes along x. Rows far apart share a word: nearly as far as can be, because per_z_
+  // is odd and close to the root of their number.
   std::size_t row_index(int cy, int cz) const {
-    constexpr std::uint32_t kPerZ = 40503;
-    return (static_cast<std::uint32_t>(cy) + static_cast<std::uint32_t>(cz) * kPerZ) &
+    return (static_cast<std::uint32_t>(cy) + static_cast<std::uint32_t>(cz) * per_z_) &
            (rows_.size() - 1);
   }
   std::uint64_t& row(int cy, int cz) { return rows_[row_index(cy, cz)]; }
   const std::uint64_t& row(int cy, int cz) const { return rows_[row_index(cy, cz)]; }
 
   float per_side_ = 1.0F;
+  std::uint32_t per_z_ = 1;
   std::vector<std::uint64_t> rows_;
 };
 

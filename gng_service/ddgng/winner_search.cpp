@@ -172,7 +172,7 @@ Winners NearestTwoInCells(const CellList& list, const Eigen::Vector3f& signal_m)
 Winners NearestTwoInGrid(WinnerSearch& search, const Graph& graph, const Eigen::Vector3f& v) {
   Query query;
   query.signal_m = {v.x(), v.y(), v.z(), 0.0F};
-  ListCells(search.grid(), query);
+  ListCells(search, query);
   NearestTwo(search, graph, query);
   return query.winners;
 }
@@ -216,7 +216,7 @@ void WinnerSearch::clear() {
   inside_parts_.clear(kPart);
   spacing_m2_ = {};
   until_check_ = {16, 16};
-  until_mark_ = 0;
+  until_mark_ = {};
   counts_ = {};
 }
 
@@ -238,11 +238,10 @@ void WinnerSearch::move(int slot, const Eigen::Vector3f& position_m) {
 }
 
 void WinnerSearch::mark(int slot) {
-  --until_mark_;
   const CellGrid::Place& place = grid_.place(slot);
   const Eigen::Vector3f center_m(place.center_m.data());
   const Eigen::Vector3f reach_m(place.reach_m.data());
-  others_[1 - place.level].mark(center_m, reach_m);
+  if (others_[1 - place.level].mark(center_m, reach_m)) --until_mark_[place.level];
   if (place.level == 1) inside_parts_.mark(center_m, reach_m);
 }
 
@@ -258,7 +257,7 @@ Winners WinnerSearch::nearest_two(const Graph& graph, const Eigen::Vector3f& sig
   return HWY_DYNAMIC_DISPATCH(NearestTwoInGrid)(*this, graph, signal_m);
 }
 
-Winners WinnerSearch::nearest_two_crowded(int level, const std::array<int, 3>& c,
+Winners WinnerSearch::nearest_two_crowded(int level, const std::array<std::int32_t, 4>& c,
                                           const Eigen::Vector3f& signal_m) {
   Winners none;
   none.second_m2 = hwy::HighestValue<float>();
@@ -289,7 +288,7 @@ bool WinnerSearch::list_ball(const Eigen::Vector3f& signal_m, float second_m2,
   for (int index = 0; index < CellGrid::kNumLevels; ++index) {
     const CellGrid::Level& level = grid_.level(index);
     const float sides = radius_m * level.per_side;
-    const Eigen::Vector3f f = signal_m * level.per_side;
+    const Eigen::Vector3f f = signal_m * level.per_side + Eigen::Vector3f(CellGrid::kShift.data());
     if (!(f.cwiseAbs().maxCoeff() + sides < CellGrid::kMaxSides)) return false;  // also NaN
     if (level.num_nodes == 0) continue;
     if (index == 1 && !inside_parts_.maybe_within(signal_m, radius_m)) continue;
@@ -330,22 +329,22 @@ void WinnerSearch::learn_spacing(const Graph& graph, const Winners& winners) {
     const float ratio = fitting_side_m(level) * grid_.level(level).per_side;
     if (ratio < 0.87F || ratio > 1.15F) {
       grid_.resize(level, fitting_side_m(level));
-      mark_all(graph);
+      until_mark_ = {};
     }
   }
-  if (until_mark_ <= 0) mark_all(graph);
+  for (int marked = 0; marked < CellGrid::kNumLevels; ++marked) {
+    if (until_mark_[marked] <= 0) mark_all(graph, marked);
+  }
 }
 
-// Forgets the places that nodes have left.
-void WinnerSearch::mark_all(const Graph& graph) {
-  for (int level = 0; level < CellGrid::kNumLevels; ++level) {
-    others_[level].clear(grid_.level(level).side_m);
-  }
-  inside_parts_.clear(kPart * grid_.level(0).side_m);
+// Marks the nodes of a level anew and so forgets the places that they have left.
+void WinnerSearch::mark_all(const Graph& graph, int level) {
+  others_[1 - level].clear(grid_.level(1 - level).side_m);
+  if (level == 1) inside_parts_.clear(kPart * grid_.level(0).side_m);
   for (int slot = 0; slot < graph.num_slots(); ++slot) {
-    if (graph.alive(slot)) mark(slot);
+    if (graph.alive(slot) && grid_.place(slot).level == level) mark(slot);
   }
-  until_mark_ = 256 + 2 * graph.num_slots();
+  until_mark_[level] = 64 + grid_.level(level).num_nodes;
 }
 
 }  // namespace ddgng

@@ -31,10 +31,10 @@ struct Query {
   std::array<std::uint16_t, kBlockCells> cells{};  ///< those with nodes first
   int num_cells = 0;
   int level = 0;
-  std::array<int, 3> corner{};  ///< the first of the eight
-  float border_m2 = 0.0F;       ///< no other node of the level is nearer than this, squared
-  bool crowded = false;         ///< a cell goes on elsewhere
-  std::uint32_t layout = 0;     ///< CellGrid::layout() when they were listed
+  alignas(16) std::array<std::int32_t, 4> corner{};  ///< the first of the eight
+  float border_m2 = 0.0F;    ///< no other node of the level is nearer than this, squared
+  bool crowded = false;      ///< they go on in more cells than fit
+  std::uint32_t layout = 0;  ///< CellGrid::layout() when they were listed
 
   Winners winners;
 };
@@ -83,10 +83,11 @@ class WinnerSearch {
   bool others_in_block(int level, int cx, int cy, int cz) const {
     return others_[level].maybe_in_block(cx, cy, cz);
   }
+  const Occupancy& inside_parts() const { return inside_parts_; }
   bool others_within(int level, const Eigen::Vector3f& point_m, float distance_m2) const;
   /// The nearest two nodes in 2 x 2 x 2 cells when these hold many or at equal distances.
   /// second_m2 is huge when there are fewer, or too many to list.
-  Winners nearest_two_crowded(int level, const std::array<int, 3>& c,
+  Winners nearest_two_crowded(int level, const std::array<std::int32_t, 4>& c,
                               const Eigen::Vector3f& signal_m);
   /// The answer when the nearest cells could not prove theirs, which found a second node at this
   /// distance (or none: infinite).
@@ -96,7 +97,7 @@ class WinnerSearch {
   bool list_ball(const Eigen::Vector3f& signal_m, float second_m2, struct CellList& list) const;
   void mark(int slot);
   float fitting_side_m(int level) const;
-  void mark_all(const Graph& graph);
+  void mark_all(const Graph& graph, int level);
 
   CellGrid grid_;
   // Where the nodes of the other level may be, in cubes as large as the cells of this one.
@@ -104,7 +105,7 @@ class WinnerSearch {
   Occupancy inside_parts_;  // the nodes inside, in cubes of a quarter of the outside's cells
   std::array<float, CellGrid::kNumLevels> spacing_m2_{};
   std::array<int, CellGrid::kNumLevels> until_check_{};
-  int until_mark_ = 0;
+  std::array<int, CellGrid::kNumLevels> until_mark_{};  // cubes that nodes of the level come into
   std::uint32_t changes_ = 0;
   bool linear_only_ = false;
   Counts counts_;
