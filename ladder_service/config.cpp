@@ -84,6 +84,8 @@ void read(ConfigTable table, ladder::MeasureParams& params) {
   table.read("rail_half_width_m", params.rail_half_width_m);
   table.read("rail_width_switch_m", params.rail_width_switch_m);
   table.read("prior_radius_m", params.prior_radius_m);
+  table.read("edge_lost_px", params.edge_lost_px);
+  table.read("edge_gained_px", params.edge_gained_px);
   table.read("radius_alike", params.radius_alike);
   table.read("head_min_weight", params.head_min_weight);
   table.read("head_min_share", params.head_min_share);
@@ -100,9 +102,16 @@ void read(ConfigTable table, ladder::AlignParams& params) {
   table.read("enabled", params.enabled);
   table.read("sigma_shift_m", params.sigma_shift_m);
   table.read("sigma_turn_rad", params.sigma_turn_rad);
-  table.read("sigma_point_m", params.sigma_point_m);
-  table.read("points_per_plane", params.points_per_plane);
-  table.read("points_per_bar", params.points_per_bar);
+  table.read("least_share", params.least_share);
+  table.read("sigma_range_m", params.sigma_range_m);
+  table.read("sigma_gravity", params.sigma_gravity);
+  table.read("sigma_plane_m", params.sigma_plane_m);
+  table.read("keep", params.keep);
+  table.read("frame_share", params.frame_share);
+  table.read("corner_m", params.corner_m);
+  table.read("contested_m", params.contested_m);
+  table.read("thick_max", params.thick_max);
+  table.read("upright_max_sin", params.upright_max_sin);
   table.read("min_weight", params.min_weight);
   table.read("min_nodes", params.min_nodes);
   table.read("max_planes", params.max_planes);
@@ -111,6 +120,7 @@ void read(ConfigTable table, ladder::AlignParams& params) {
   table.read("end_misfit_m", params.end_misfit_m);
   table.read("max_shift_m", params.max_shift_m);
   table.read("max_turn_rad", params.max_turn_rad);
+  table.read("max_range_m", params.max_range_m);
 }
 
 void read(ConfigTable table, ladder::TrackParams& params) {
@@ -131,6 +141,8 @@ void read(ConfigTable table, ladder::AffordanceParams& params) {
   table.read("clearance_m", params.clearance_m);
   table.read("claw_width_m", params.claw_width_m);
   table.read("claw_margin_m", params.claw_margin_m);
+  table.read("margin_sigmas", params.margin_sigmas);
+  table.read("max_wander_m", params.max_wander_m);
   table.read("gripper_width_m", params.gripper_width_m);
   table.read("outlier_reach_m", params.outlier_reach_m);
   table.read("outlier_min_weight", params.outlier_min_weight);

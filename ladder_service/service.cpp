@@ -56,14 +56,14 @@ class LadderService final : public runtime::Service {
   /// Said once; health stays degraded while it is so.
   void report_heads() {
     const ladder::HeadFit fit = tracker_.head_fit();
-    if (fit.is_correcting) context_.health.set_state(health_t::STATE_DEGRADED);
-    if (fit.is_correcting && !heads_told_) {
+    if (fit.is_misfit) context_.health.set_state(health_t::STATE_DEGRADED);
+    if (fit.is_misfit && !heads_told_) {
       context_.journal.warning("heads disagree by " +
                                std::to_string(static_cast<int>(1e3 * fit.misfit_m + 0.5)) +
                                " mm on what they see: their mounting differs from the configured "
                                "one; corrected as far as it shows, please run scripts/calibrate");
     }
-    heads_told_ = fit.is_correcting;
+    heads_told_ = fit.is_misfit;
   }
 
   runtime::ServiceContext context_;

@@ -49,20 +49,20 @@ void Affordance::sample(const LadderEstimate& estimate, int rung, const RungSurf
   const double length = std::min(length_m(estimate.rungs[rung]), params_.max_length_m);
   const int num_steps = std::max(1, static_cast<int>(std::floor(length / params_.step_m)));
   step_m_ = length / num_steps;
-  find_blocked(estimate, rung, rails);
+  find_blocked(estimate, rung, surface.margin_m, rails);
   samples_.clear();
   for (int q = 0; q < num_steps; ++q) {
     samples_.push_back(reason_at(estimate, rung, surface, (q + 0.5) * step_m_));
   }
 }
 
-void Affordance::find_blocked(const LadderEstimate& estimate, int rung,
+void Affordance::find_blocked(const LadderEstimate& estimate, int rung, double margin_m,
                               std::span<const RailLine> rails) {
   blocked_.clear();
   const Rung& self = estimate.rungs[rung];
   const double length = length_m(self);
   const Axis axis{self.end0_m, unit(self.end1_m - self.end0_m, Eigen::Vector3d::UnitX())};
-  const double claw_m = params_.claw_width_m + params_.claw_margin_m;
+  const double claw_m = params_.claw_width_m + std::max(params_.claw_margin_m, margin_m);
   // A sound rung ends at the inner faces of its rails.
   blocked_.push_back({0.0, claw_m, Reason::kRailTooNear});
   blocked_.push_back({length - claw_m, length, Reason::kRailTooNear});

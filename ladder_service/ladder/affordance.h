@@ -18,6 +18,7 @@ struct RungSurface {
   Stretches seen;
   Stretches attached;
   double tilt_sin = 0.0;
+  double margin_m = 0.0;        ///< its place along itself and its ends are known so well
   bool may_be_offered = false;  ///< old enough (the paper asks more age than for trust)
 };
 
@@ -41,7 +42,8 @@ class Affordance {
               std::span<const RailLine> rails);
   Reason reason_at(const LadderEstimate& estimate, int rung, const RungSurface& surface,
                    double along_m) const;
-  void find_blocked(const LadderEstimate& estimate, int rung, std::span<const RailLine> rails);
+  void find_blocked(const LadderEstimate& estimate, int rung, double margin_m,
+                    std::span<const RailLine> rails);
   void offer(int rung, const Eigen::Vector3d& body_m, LadderEstimate& estimate);
   void append_runs(int rung, LadderEstimate& estimate);
 

@@ -36,7 +36,7 @@ const Detections& BarDetector::detect(const NodeCloud& seen) {
     found_.rails.push_back(measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i], {}));
   }
   measure_others(cloud, bars);
-  alignment_.learn(cloud, nodes_, bars);
+  alignment_.learn(seen, nodes_, bars);
   return found_;
 }
 

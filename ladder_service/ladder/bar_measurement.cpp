@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ladder/backdrop.h"
 #include "ladder/chord_depth.h"
 
 namespace ladder {
@@ -201,13 +202,16 @@ void BarMeasurement::find_ends(const BarFrame& frame, const Bar& bar, const Betw
   }
 }
 
-// Points spread evenly over the visible height 2 h have the variance h^2 / 3. Pixels that touch an
-// edge are lost, half of one at either side.
-void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) {
+// Points spread evenly over the visible height 2 h have the variance h^2 / 3. Before something, the
+// pixels on an edge show a mixture and are lost; before nothing, they show the bar alone and count.
+void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const {
+  const MeasureParams& p = params_.measure;
   const double range_m = std::sqrt((fit.axis.origin_m - bar.eye_m).squaredNorm());
   const double variance_m2 = std::max(0.0, fit.height.dot(fit.spread_m2 * fit.height));
-  fit.out.half_pixel_m = 0.5 * range_m * frame.cloud.pixel_pitch_rad;
-  fit.out.radius_m = std::sqrt(3.0 * variance_m2) + fit.out.half_pixel_m;
+  const double backed = backed_share(frame.cloud, {fit.axis, fit.from_m, fit.to_m, bar.eye_m});
+  const double lost_px = backed * p.edge_lost_px - (1.0 - backed) * p.edge_gained_px;
+  fit.out.lost_m = lost_px * range_m * frame.cloud.pixel_pitch_rad;
+  fit.out.radius_m = std::max(0.0, std::sqrt(3.0 * variance_m2) + fit.out.lost_m);
   fit.out.depth = fit.depth;
   fit.out.end0_m = fit.axis.at(fit.from_m);
   fit.out.end1_m = fit.axis.at(fit.to_m);
@@ -215,8 +219,7 @@ void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit
 
 void BarMeasurement::push_back(double radius_m, MeasuredBar& bar) {
   constexpr double kLeastVisible = 0.3;  // of the radius
-  const double visible_m =
-      std::clamp(radius_m - bar.half_pixel_m, kLeastVisible * radius_m, radius_m);
+  const double visible_m = std::clamp(radius_m - bar.lost_m, kLeastVisible * radius_m, radius_m);
   const Eigen::Vector3d by_m = mean_chord_depth_m(radius_m, visible_m) * bar.depth;
   bar.end0_m += by_m;
   bar.end1_m += by_m;

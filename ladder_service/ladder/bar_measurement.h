@@ -53,7 +53,7 @@ class BarMeasurement {
   Eigen::Vector3d rail_direction(const Bar& rail,
                                  const std::array<MomentSum, kNumHeads>& heads) const;
   void find_ends(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
-  static void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit);
+  void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const;
   void find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const;
   double weight_behind(const BarNodes& nodes, const Fit& fit) const;
   void mark_stretches(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;

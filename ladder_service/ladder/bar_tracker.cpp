@@ -11,6 +11,11 @@ Eigen::Matrix3d BarTrack::covariance_m2(const TrackParams& params) const {
   return averaging * scatter_m2 + systematic_m2 * Eigen::Matrix3d::Identity();
 }
 
+double BarTrack::wander_along_m() const {
+  const Eigen::Vector3d along = unit(bar.end1_m - bar.end0_m, Eigen::Vector3d::UnitX());
+  return std::sqrt(std::max(0.0, along.dot(scatter_m2 * along)));
+}
+
 std::uint16_t BarTrack::flags(const MeasureParams& params) const {
   unsigned bits = kFlagNone;
   if (bar.is_stub()) bits |= kFlagStub;

@@ -3,6 +3,7 @@
 // averaged.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -27,6 +28,10 @@ struct BarTrack {
   double averaging = 1.0;  ///< variance of the averaged middle point / that of one frame's
 
   Eigen::Matrix3d covariance_m2(const TrackParams& params) const;
+  /// How far one frame's middle point lies from the average, r.m.s.; where the ladder moves and
+  /// nobody says so, as far as the average lags.
+  double wander_m() const { return std::sqrt(scatter_m2.trace()); }
+  double wander_along_m() const;
   std::uint16_t flags(const MeasureParams& params) const;
 };
 

@@ -34,12 +34,15 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
     const double zb = tracks[b].bar.middle_m().z();
     return za < zb || (za == zb && a < b);
   });
+  const Eigen::Vector3d body_m = cloud.body_position_m.cast<double>();
   estimate.rungs.clear();
   surfaces.clear();
   for (const int i : order_) {
     const BarTrack& track = tracks[i];
     estimate.rungs.push_back(to_rung(track, confirmed));
-    surfaces.push_back({track.bar.seen, track.bar.attached, track.bar.tilt_sin, true});
+    const bool is_steady = track.wander_m() <= params_.affordance.max_wander_m;
+    surfaces.push_back({track.bar.seen, track.bar.attached, track.bar.tilt_sin,
+                        margin_m(track, body_m), is_steady});
   }
   write_rails(found, estimate, rails);
 }
@@ -84,6 +87,14 @@ bool DefaultMode::is_same_bar(const MeasuredBar& a, const MeasuredBar& b) const 
   const double bar_height_m = 2.0 * params_.bar.wide_half_height_m;
   return axis.distance(b.middle_m()) < bar_height_m &&
          std::abs(axis.along(b.middle_m())) < 0.5 * (a.length_m() + b.length_m());
+}
+
+// How far the ends may be off along the rung: by what the rung wanders from frame to frame, and by
+// what the heads' mountings move all they see.
+double DefaultMode::margin_m(const BarTrack& track, const Eigen::Vector3d& body_m) const {
+  const double range_m = std::sqrt((track.bar.middle_m() - body_m).squaredNorm());
+  return params_.affordance.margin_sigmas *
+         std::max(track.wander_along_m(), detector_.alignment().side_sigma_m(range_m));
 }
 
 Rung DefaultMode::to_rung(const BarTrack& track, bool confirmed) const {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 namespace ladder {
@@ -19,9 +19,14 @@ Matrix3d covariance_of(const HeadMoment& m) {
   return covariance;
 }
 
-void apply(const HeadCorrection& correction, const Vector3d& head_m, HeadMoment& m) {
+void apply(const HeadCorrection& correction, const RangeError& error, const Vector3d& head_m,
+           HeadMoment& m) {
   const Vector3d mean_m = m.mean_m.cast<double>();
-  const Vector3d moved_m = mean_m + correction.turn_rad.cross(mean_m - head_m) + correction.shift_m;
+  const Vector3d arm_m = mean_m - head_m;
+  const double range_m = std::sqrt(arm_m.squaredNorm());
+  if (!(range_m > 0.0 && range_m < std::numeric_limits<double>::max())) return;
+  const Vector3d moved_m = mean_m + correction.turn_rad.cross(arm_m) + correction.shift_m -
+                           error.at(range_m) / range_m * arm_m;
   m.mean_m = moved_m.cast<float>();
   Matrix3d turn = Matrix3d::Identity();
   turn(2, 1) = correction.turn_rad.x();
@@ -59,14 +64,18 @@ HeadAlignment::HeadAlignment(const LadderParams& params) : params_(params.align)
   aligned_.moments.reserve(kNumHeads * num_nodes);
   aligned_.planes.reserve(params_.max_planes);
   samples_.reserve(kNumHeads * num_nodes);
+  thicknesses_.reserve(kNumHeads * num_nodes);
   const auto num_bars = static_cast<std::size_t>(3 * params.max_bars);
   misfits_m_.reserve(kNumHeads * (2 * num_bars + params_.max_planes));
 }
 
 void HeadAlignment::reset() {
+  equations_.clear();
   corrections_ = {};
+  range_error_ = {};
   misfit_m_ = 0.0;
-  is_correcting_ = false;
+  num_misfits_ = 0;
+  is_misfit_ = false;
 }
 
 // Edges and suspected boxes are not copied: the default mode does not read them.
@@ -91,134 +100,210 @@ const NodeCloud& HeadAlignment::correct(const NodeCloud& cloud) {
   aligned_.range_max_m = cloud.range_max_m;
   for (HeadMoment& m : aligned_.moments) {
     if (!cloud.head_valid[m.head]) continue;
-    apply(corrections_[m.head], cloud.head_position_m[m.head].cast<double>(), m);
+    apply(corrections_[m.head], range_error_, cloud.head_position_m[m.head].cast<double>(), m);
   }
   return aligned_;
 }
 
-void HeadAlignment::learn(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars) {
+void HeadAlignment::learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars) {
   if (!params_.enabled) return;
-  equations_ = {};
   misfits_m_.clear();
-  for (int plane = 0; plane < static_cast<int>(cloud.planes.size()); ++plane) {
-    sample_plane(cloud, plane);
-    const Vector3d normal = cloud.planes[plane].normal.cast<double>();
-    if (normal.allFinite()) add_distances(cloud, normal, params_.points_per_plane);
-  }
+  // One head alone has nothing to agree with.
+  if (std::count(seen.head_valid.begin(), seen.head_valid.end(), true) < 2) return;
+  equations_.forget(params_.keep);
+  const int num_planes = std::min(params_.max_planes, static_cast<int>(seen.planes.size()));
+  for (int plane = 0; plane < num_planes; ++plane) learn_plane(seen, nodes, plane);
   for (const std::vector<Bar>* kind : {&bars.rungs, &bars.rails}) {
-    for (const Bar& bar : *kind) {
-      sample_bar(cloud, nodes, bars, bar);
-      const Vector3d& d = bar.axis.direction;
-      const Vector3d ray = unit(bar.axis.origin_m - bar.eye_m, Vector3d::UnitX());
-      const Vector3d depth = unit(ray - ray.dot(d) * d, Vector3d::UnitZ().cross(d));
-      for (const Vector3d& across : {depth, Vector3d(d.cross(depth))}) {
-        add_distances(cloud, across, params_.points_per_bar);
-      }
-    }
+    for (const Bar& bar : *kind) note_bar(seen, nodes, bars, bar);
   }
   follow_misfit();
-  solve(cloud);
+  solve();
 }
 
-void HeadAlignment::sample_plane(const NodeCloud& cloud, int plane) {
+void HeadAlignment::learn_plane(const NodeCloud& cloud, const BarNodes& nodes, int plane) {
+  Surface surface;
+  surface.normal = cloud.planes[plane].normal.cast<double>();
+  if (!surface.normal.allFinite() || !(surface.normal.squaredNorm() > 0.5)) return;
+  surface.along = unit(surface.normal.cross(Vector3d::UnitZ()), Vector3d::UnitX());
+  surface.up = surface.normal.cross(surface.along);
   samples_.clear();
   for (const HeadMoment& m : cloud.moments) {
-    if (cloud.plane[m.node] != plane || !cloud.head_valid[m.head]) continue;
-    if (!(m.weight >= params_.min_weight) || !m.mean_m.allFinite()) continue;
-    samples_.push_back({m.head, m.mean_m.cast<double>()});
+    if (cloud.plane[m.node] != plane) continue;
+    const Vector3d point_m = m.mean_m.cast<double>();
+    if (!point_m.allFinite() || is_at_corner(cloud, plane, point_m)) continue;
+    if (is_contested(nodes, point_m)) continue;
+    add_sample(cloud, m, surface.normal);
   }
+  measure_noise();
+  equations_.begin_surface(surface.normal);
+  add_surface(cloud, surface);
+  add_gravity(cloud, plane, surface);
+  equations_.end_surface();
+  note_misfit(surface.normal);
 }
 
-void HeadAlignment::sample_bar(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
-                               const Bar& bar) {
+void HeadAlignment::note_bar(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
+                             const Bar& bar) {
   samples_.clear();
   for (const int k : bars.members_of(bar)) {
     for (int i = 0; i < nodes[k].num_moments; ++i) {
-      const HeadMoment& m = cloud.moments[nodes[k].first_moment + i];
-      if (!cloud.head_valid[m.head] || !(m.weight >= params_.min_weight)) continue;
-      if (!m.mean_m.allFinite()) continue;
-      samples_.push_back({m.head, m.mean_m.cast<double>()});
+      add_sample(cloud, cloud.moments[nodes[k].first_moment + i], Vector3d::Zero());
     }
+  }
+  const Vector3d& d = bar.axis.direction;
+  const Vector3d ray = unit(bar.axis.origin_m - bar.eye_m, Vector3d::UnitX());
+  const Vector3d depth = unit(ray - ray.dot(d) * d, Vector3d::UnitZ().cross(d));
+  note_misfit(depth);
+  note_misfit(d.cross(depth));
+}
+
+void HeadAlignment::add_sample(const NodeCloud& cloud, const HeadMoment& m,
+                               const Vector3d& normal) {
+  if (!cloud.head_valid[m.head] || !(m.weight >= params_.min_weight)) return;
+  if (!m.mean_m.allFinite() || samples_.size() == samples_.capacity()) return;
+  const Vector3d point_m = m.mean_m.cast<double>();
+  const Vector3d arm_m = point_m - cloud.head_position_m[m.head].cast<double>();
+  const double range2_m2 = arm_m.squaredNorm();
+  const double thickness = normal.dot(covariance_of(m) * normal) / range2_m2;
+  samples_.push_back({m.head, point_m, range2_m2 / static_cast<double>(m.weight), thickness});
+}
+
+// How thick the nodes are is the noise. A node that holds more than the plane, a part of what
+// stands before it or pixels on the edge of that, is thicker than noise makes the others; its mean
+// is off the plane.
+void HeadAlignment::measure_noise() {
+  if (samples_.empty()) return;
+  thicknesses_.clear();
+  for (const Sample& sample : samples_) thicknesses_.push_back(sample.thickness);
+  const auto median = thicknesses_.begin() + static_cast<std::ptrdiff_t>(thicknesses_.size() / 2);
+  std::nth_element(thicknesses_.begin(), median, thicknesses_.end());
+  const double most = params_.thick_max * *median;
+  for (Sample& sample : samples_) sample.variance_m2 *= *median;
+  std::erase_if(samples_, [&](const Sample& sample) { return sample.thickness > most; });
+}
+
+// Nodes there won points of both planes: their mean is on neither.
+bool HeadAlignment::is_at_corner(const NodeCloud& cloud, int plane, const Vector3d& point_m) const {
+  for (int i = 0; i < static_cast<int>(cloud.planes.size()); ++i) {
+    const Plane& other = cloud.planes[i];
+    if (i == plane) continue;
+    if (std::abs(other.normal.cast<double>().dot(point_m) - other.offset_m) < params_.corner_m) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// What stands before the plane wins those of its points that noise brings nearer.
+bool HeadAlignment::is_contested(const BarNodes& nodes, const Vector3d& point_m) const {
+  const double reach_m = params_.contested_m;
+  const BarNodes::Range range = nodes.between(point_m.z() - reach_m, point_m.z() + reach_m);
+  for (int k = range.begin; k < range.end; ++k) {
+    if ((nodes.position_m(k) - point_m).squaredNorm() < reach_m * reach_m) return true;
+  }
+  return false;
+}
+
+void HeadAlignment::add_surface(const NodeCloud& cloud, const Surface& surface) {
+  std::array<double, kNumHeads> count{};
+  Vector3d middle_m = Vector3d::Zero();
+  for (const Sample& sample : samples_) {
+    count[sample.head] += 1.0;
+    middle_m += sample.point_m;
+  }
+  if (samples_.empty()) return;
+  middle_m /= static_cast<double>(samples_.size());
+  const double systematic_m2 = params_.sigma_plane_m * params_.sigma_plane_m;
+  for (const Sample& sample : samples_) {
+    if (count[sample.head] < params_.min_nodes) continue;
+    const Vector3d place_m = sample.point_m - middle_m;
+    AlignmentEquations::Sample row;
+    row.head = sample.head;
+    row.arm_m = sample.point_m - cloud.head_position_m[sample.head].cast<double>();
+    row.off_m = surface.normal.dot(place_m);
+    row.shape = {1.0, surface.along.dot(place_m), surface.up.dot(place_m)};
+    row.weight = params_.frame_share / (sample.variance_m2 + systematic_m2);
+    equations_.add(row);
   }
 }
 
-// Each head is drawn to what the heads agree on along the normal: the mean of their means.
-void HeadAlignment::add_distances(const NodeCloud& cloud, const Vector3d& normal,
-                                  double num_points) {
-  std::array<double, kNumHeads> count{}, sum_m{}, uncorrected_m{};
+// The plane leans by its shape: its true normal is normal - along shape[1] - up shape[2].
+void HeadAlignment::add_gravity(const NodeCloud& cloud, int plane, const Surface& surface) {
+  const NodeClass kind = cloud.planes[plane].plane_class;
+  // Gravity says the same in every frame: all frames together have the weight of one.
+  const double weight = (1.0 - params_.keep) / (params_.sigma_gravity * params_.sigma_gravity);
+  const Vector3d& n = surface.normal;
+  const auto add = [&](const Vector3d& level) {
+    equations_.add_condition({0.0, surface.along.dot(level), surface.up.dot(level)}, n.dot(level),
+                             weight);
+  };
+  if (kind == NodeClass::kWall && std::abs(n.z()) < params_.upright_max_sin) {
+    add(Vector3d::UnitZ());
+  }
+  const double level2 = 1.0 - params_.upright_max_sin * params_.upright_max_sin;
+  if (kind == NodeClass::kSafeGround && n.z() * n.z() > level2) {
+    add(Vector3d::UnitX());
+    add(Vector3d::UnitY());
+  }
+}
+
+void HeadAlignment::note_misfit(const Vector3d& normal) {
+  std::array<double, kNumHeads> count{}, sum_m{};
   for (const Sample& sample : samples_) {
-    const HeadCorrection& correction = corrections_[sample.head];
-    const Vector3d arm_m = sample.point_m - cloud.head_position_m[sample.head].cast<double>();
     count[sample.head] += 1.0;
     sum_m[sample.head] += normal.dot(sample.point_m);
-    uncorrected_m[sample.head] +=
-        normal.dot(sample.point_m - correction.turn_rad.cross(arm_m) - correction.shift_m);
   }
-  double num_heads = 0.0, offset_m = 0.0, uncorrected_mean_m = 0.0;
+  double num_heads = 0.0, mean_m = 0.0;
   for (int head = 0; head < kNumHeads; ++head) {
     if (count[head] < params_.min_nodes) continue;
     num_heads += 1.0;
-    offset_m += sum_m[head] / count[head];
-    uncorrected_mean_m += uncorrected_m[head] / count[head];
+    mean_m += sum_m[head] / count[head];
   }
-  if (num_heads == 0.0) return;
-  offset_m /= num_heads;
-  uncorrected_mean_m /= num_heads;
-  for (int head = 0; head < kNumHeads && num_heads > 1.0; ++head) {
-    if (count[head] < params_.min_nodes) continue;
-    const double off_m = uncorrected_m[head] / count[head] - uncorrected_mean_m;
-    if (misfits_m_.size() == misfits_m_.capacity()) continue;
+  if (num_heads < 2.0) return;
+  mean_m /= num_heads;
+  for (int head = 0; head < kNumHeads; ++head) {
+    if (count[head] < params_.min_nodes || misfits_m_.size() == misfits_m_.capacity()) continue;
+    const double off_m = sum_m[head] / count[head] - mean_m;
     misfits_m_.push_back(std::abs(off_m) * std::sqrt(num_heads / (num_heads - 1.0)));
-  }
-  const double information = num_points / (params_.sigma_point_m * params_.sigma_point_m);
-  for (const Sample& sample : samples_) {
-    if (count[sample.head] < params_.min_nodes) continue;
-    const double weight = information / count[sample.head];
-    const Vector3d arm_m = sample.point_m - cloud.head_position_m[sample.head].cast<double>();
-    Vector6 row;
-    row << arm_m.cross(normal), normal;
-    equations_[sample.head].information += weight * row * row.transpose();
-    equations_[sample.head].right += weight * (offset_m - normal.dot(sample.point_m)) * row;
   }
 }
 
-// A phase error bends what one head sees; to explain that by its mounting would spoil a good one.
 // The median: a step taken for a plane, of which each head sees another part, is no misfit of
 // heads.
 void HeadAlignment::follow_misfit() {
   if (misfits_m_.empty()) return;
   const auto median = misfits_m_.begin() + static_cast<std::ptrdiff_t>(misfits_m_.size() / 2);
   std::nth_element(misfits_m_.begin(), median, misfits_m_.end());
-  misfit_m_ += params_.gain * (*median - misfit_m_);
-  if (misfit_m_ > params_.begin_misfit_m) is_correcting_ = true;
-  if (misfit_m_ < params_.end_misfit_m) is_correcting_ = false;
+  ++num_misfits_;
+  misfit_m_ += std::max(params_.gain, 1.0 / num_misfits_) * (*median - misfit_m_);
+  if (misfit_m_ > params_.begin_misfit_m) is_misfit_ = true;
+  if (misfit_m_ < params_.end_misfit_m) is_misfit_ = false;
 }
 
-// The correction so far counts as known to the mounting's tolerance, so that what nothing shows
-// stays, or goes back to, zero.
-void HeadAlignment::solve(const NodeCloud& cloud) {
-  Vector6 prior;
-  const double turn = 1.0 / (params_.sigma_turn_rad * params_.sigma_turn_rad);
-  const double shift = 1.0 / (params_.sigma_shift_m * params_.sigma_shift_m);
-  prior << turn, turn, turn, shift, shift, shift;
-  for (int head = 0; head < kNumHeads; ++head) {
-    if (!cloud.head_valid[head]) continue;
-    HeadCorrection& correction = corrections_[head];
-    if (!is_correcting_) {
-      correction.turn_rad *= 1.0 - params_.gain;
-      correction.shift_m *= 1.0 - params_.gain;
-      continue;
-    }
-    Vector6 now;
-    now << correction.turn_rad, correction.shift_m;
-    const Matrix6 information = equations_[head].information + Matrix6(prior.asDiagonal());
-    const Vector6 right = equations_[head].right - prior.cwiseProduct(now);
-    const Vector6 step = information.llt().solve(right);
-    if (!step.allFinite()) continue;
-    const Vector3d turn_rad = correction.turn_rad + params_.gain * step.head<3>();
-    const Vector3d shift_m = correction.shift_m + params_.gain * step.tail<3>();
-    correction.turn_rad = bounded(turn_rad, params_.max_turn_rad);
-    correction.shift_m = bounded(shift_m, params_.max_shift_m);
+double HeadAlignment::side_sigma_m(double range_m) const {
+  double turn2 = 0.0;
+  for (const HeadCorrection& correction : corrections_) turn2 += correction.turn_rad.squaredNorm();
+  const double share2 = turn2 / (3 * kNumHeads) / (params_.sigma_turn_rad * params_.sigma_turn_rad);
+  const double turned_m = params_.sigma_turn_rad * range_m;
+  const double shifted_m = params_.sigma_shift_m;
+  return std::sqrt(share2 * (turned_m * turned_m / kNumHeads + shifted_m * shifted_m / 2.0));
+}
+
+// Heads that agree are well mounted: what is left of their corrections would be noise.
+void HeadAlignment::solve() {
+  const double share = std::clamp(misfit_m_ / params_.sigma_shift_m, params_.least_share, 1.0);
+  const AlignmentPrior prior{share * params_.sigma_turn_rad, share * params_.sigma_shift_m,
+                             params_.sigma_range_m};
+  if (!equations_.solve(prior, corrections_, range_error_)) {
+    equations_.clear();
+    return;
+  }
+  for (HeadCorrection& correction : corrections_) {
+    correction.turn_rad = bounded(correction.turn_rad, params_.max_turn_rad);
+    correction.shift_m = bounded(correction.shift_m, params_.max_shift_m);
+  }
+  for (int knot = 0; knot < RangeError::kNumKnots; ++knot) {
+    range_error_[knot] = std::clamp(range_error_[knot], -params_.max_range_m, params_.max_range_m);
   }
 }
 

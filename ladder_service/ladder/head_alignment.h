@@ -1,27 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the heads really sit: a small turn and shift of each, so that they agree on planes, rungs
-// and rails, and planes on gravity. Learnt from frame to frame, held to the mounting's tolerance,
-// and only where the heads disagree by more than their own phase error explains. What all heads
-// have in common and gravity does not show stays unknown.
+// Where the heads really sit and how far they err in range: a small turn and shift of each and an
+// error over range that they have in common, so that planes are flat and the same for every head,
+// floors level and walls upright. Held to what mountings and heads of this kind may have; what
+// nothing shows stays zero, as does what all heads have in common and gravity does not show. Learnt
+// from the cloud as it came: no estimate feeds itself. Rungs and rails teach nothing, they only
+// show how far the heads are apart: what is seen of them depends on where they are seen from.
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "ladder/alignment_equations.h"
 #include "ladder/bar.h"
 #include "ladder/node_cloud.h"
 #include "ladder/params.h"
 
 namespace ladder {
-
-/// A point p of a head that stands at h lies at p + turn x (p - h) + shift.
-struct HeadCorrection {
-  Eigen::Vector3d turn_rad = Eigen::Vector3d::Zero();
-  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
-};
-
-using HeadCorrections = std::array<HeadCorrection, kNumHeads>;
 
 class HeadAlignment {
  public:
@@ -31,43 +27,57 @@ class HeadAlignment {
   /// one. Stands until the next call.
   const NodeCloud& correct(const NodeCloud& cloud);
 
-  /// Learns from a corrected cloud and the bars found in it.
-  void learn(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars);
+  /// Learns from the cloud as it came and the bars found in the corrected one.
+  void learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars);
 
   void reset();
   /// How far the heads are apart on what they see together, without corrections; averaged.
   double misfit_m() const { return misfit_m_; }
-  bool is_correcting() const { return is_correcting_; }
+  /// The heads are farther apart than well mounted ones.
+  bool is_misfit() const { return is_misfit_; }
+  /// How far what stands so far away may be off to the side: all heads may be turned by what none
+  /// shows, and the two that see one end be shifted, as much as the others were seen to be wrong.
+  double side_sigma_m(double range_m) const;
   const HeadCorrections& corrections() const { return corrections_; }
+  double range_error_m(double range_m) const { return range_error_.at(range_m); }
 
  private:
-  using Vector6 = Eigen::Matrix<double, 6, 1>;
-  using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  /// What one head's points say about its correction, as normal equations.
-  struct Equations {
-    Matrix6 information = Matrix6::Zero();
-    Vector6 right = Vector6::Zero();
-  };
   /// Points of one head on one surface or bar.
   struct Sample {
     int head = 0;
     Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
+    double variance_m2 = 0.0;  ///< of the mean across the surface
+    double thickness = 0.0;    ///< variance across the surface / range^2
+  };
+  /// A plane: samples lie along `normal` as a linear function of the other two directions.
+  struct Surface {
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitX();
+    Eigen::Vector3d along = Eigen::Vector3d::Zero();
+    Eigen::Vector3d up = Eigen::Vector3d::Zero();
   };
 
-  void sample_plane(const NodeCloud& cloud, int plane);
-  void sample_bar(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
-                  const Bar& bar);
-  void add_distances(const NodeCloud& cloud, const Eigen::Vector3d& normal, double num_points);
+  void learn_plane(const NodeCloud& cloud, const BarNodes& nodes, int plane);
+  void note_bar(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars, const Bar& bar);
+  void add_sample(const NodeCloud& cloud, const HeadMoment& moment, const Eigen::Vector3d& normal);
+  void measure_noise();
+  bool is_at_corner(const NodeCloud& cloud, int plane, const Eigen::Vector3d& point_m) const;
+  bool is_contested(const BarNodes& nodes, const Eigen::Vector3d& point_m) const;
+  void add_surface(const NodeCloud& cloud, const Surface& surface);
+  void add_gravity(const NodeCloud& cloud, int plane, const Surface& surface);
+  void note_misfit(const Eigen::Vector3d& normal);
   void follow_misfit();
-  void solve(const NodeCloud& cloud);
+  void solve();
 
   AlignParams params_;
+  AlignmentEquations equations_;
   HeadCorrections corrections_;
-  std::array<Equations, kNumHeads> equations_;
+  RangeError range_error_;
   std::vector<Sample> samples_;
+  std::vector<double> thicknesses_;
   std::vector<double> misfits_m_;  ///< of this frame: each head on each surface and bar
   double misfit_m_ = 0.0;
-  bool is_correcting_ = false;
+  int num_misfits_ = 0;
+  bool is_misfit_ = false;
   NodeCloud aligned_;
 };
 

@@ -64,7 +64,7 @@ void LadderTracker::reset() {
 HeadFit LadderTracker::head_fit() const {
   if (!modes_->default_mode) return {};
   const HeadAlignment& alignment = modes_->default_mode->alignment();
-  return {alignment.misfit_m(), alignment.is_correcting()};
+  return {alignment.misfit_m(), alignment.is_misfit()};
 }
 
 const LadderEstimate& LadderTracker::update(const NodeCloud& cloud) {

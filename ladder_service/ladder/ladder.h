@@ -14,8 +14,8 @@ namespace ladder {
 
 /// How well the heads agree (head_alignment.h).
 struct HeadFit {
-  double misfit_m = 0.0;       ///< without corrections
-  bool is_correcting = false;  ///< they sit elsewhere than configured
+  double misfit_m = 0.0;   ///< without corrections
+  bool is_misfit = false;  ///< they sit elsewhere than configured
 };
 
 class LadderTracker {

@@ -23,7 +23,7 @@ struct MeasuredBar {
   Eigen::Vector3d depth = Eigen::Vector3d::UnitX();  ///< unit, from the front towards the axis
   double weight = 0.0;                               ///< points
   double radius_m = 0.0;                             ///< half the height
-  double half_pixel_m = 0.0;  ///< so much of the height is lost at either edge
+  double lost_m = 0.0;  ///< so much of the height is lost at either edge; < 0: gained
   double sag_m = 0.0;
   double bend_tan = 0.0;  ///< of the angle between its halves
   double tilt_sin = 0.0;  ///< of the angle off the right angle to the rails

@@ -101,6 +101,8 @@ std::string check_test(const LadderTestParams& p) {
 std::string check_measure_and_track(const MeasureParams& m, const TrackParams& t) {
   return first_violated(std::array{
       Relation{in(0.001, m.prior_radius_m, 1.0), "measure.prior_radius_m must be in 0.001..1"},
+      Relation{in(0.0, m.edge_lost_px, 1.0), "measure.edge_lost_px must be in 0..1"},
+      Relation{in(0.0, m.edge_gained_px, 1.0), "measure.edge_gained_px must be in 0..1"},
       Relation{in(0.0, m.radius_alike, 1e3), "measure.radius_alike must be in 0..1000"},
       Relation{in(1e-6, m.min_weight, 1e9), "measure.min_weight must be in 1e-6..1e9"},
       Relation{in(0.001, m.stub_margin_m, 1.0), "measure.stub_margin_m must be in 0.001..1"},
@@ -121,9 +123,16 @@ std::string check_align(const AlignParams& p) {
   return first_violated(std::array{
       Relation{in(1e-6, p.sigma_shift_m, 1.0), "align.sigma_shift_m must be in 1e-6..1"},
       Relation{in(1e-6, p.sigma_turn_rad, 1.0), "align.sigma_turn_rad must be in 1e-6..1"},
-      Relation{in(1e-4, p.sigma_point_m, 1.0), "align.sigma_point_m must be in 1e-4..1"},
-      Relation{in(0.0, p.points_per_plane, 1e6), "align.points_per_plane must be in 0..1e6"},
-      Relation{in(0.0, p.points_per_bar, 1e6), "align.points_per_bar must be in 0..1e6"},
+      Relation{in(1e-3, p.least_share, 1.0), "align.least_share must be in 0.001..1"},
+      Relation{in(1e-6, p.sigma_range_m, 1.0), "align.sigma_range_m must be in 1e-6..1"},
+      Relation{in(1e-6, p.sigma_gravity, 1.0), "align.sigma_gravity must be in 1e-6..1"},
+      Relation{in(1e-4, p.sigma_plane_m, 1.0), "align.sigma_plane_m must be in 1e-4..1"},
+      Relation{in(0.0, p.keep, 0.9999), "align.keep must be in 0..0.9999"},
+      Relation{in(0.0, p.frame_share, 1.0), "align.frame_share must be in 0..1"},
+      Relation{in(0.0, p.corner_m, 1.0), "align.corner_m must be in 0..1"},
+      Relation{in(0.0, p.contested_m, 1.0), "align.contested_m must be in 0..1"},
+      Relation{in(1.0, p.thick_max, 1e9), "align.thick_max must be in 1..1e9"},
+      Relation{in(0.0, p.upright_max_sin, 0.5), "align.upright_max_sin must be in 0..0.5"},
       Relation{in(1e-6, p.min_weight, 1e9), "align.min_weight must be in 1e-6..1e9"},
       Relation{in(1.0, p.min_nodes, 1e6), "align.min_nodes must be in 1..1e6"},
       Relation{p.max_planes >= 1 && p.max_planes <= 1024, "align.max_planes must be in 1..1024"},
@@ -133,6 +142,7 @@ std::string check_align(const AlignParams& p) {
                "align.end_misfit_m must be in 0..begin_misfit_m"},
       Relation{in(0.0, p.max_shift_m, 0.1), "align.max_shift_m must be in 0..0.1"},
       Relation{in(0.0, p.max_turn_rad, 0.1), "align.max_turn_rad must be in 0..0.1"},
+      Relation{in(0.0, p.max_range_m, 0.1), "align.max_range_m must be in 0..0.1"},
   });
 }
 
@@ -142,6 +152,8 @@ std::string check_affordance(const AffordanceParams& p) {
       Relation{in(0.0, p.clearance_m, 1.0), "affordance.clearance_m must be in 0..1"},
       Relation{in(0.0, p.claw_width_m, 1.0), "affordance.claw_width_m must be in 0..1"},
       Relation{in(0.0, p.claw_margin_m, 1.0), "affordance.claw_margin_m must be in 0..1"},
+      Relation{in(0.0, p.margin_sigmas, 100.0), "affordance.margin_sigmas must be in 0..100"},
+      Relation{in(0.0, p.max_wander_m, 10.0), "affordance.max_wander_m must be in 0..10"},
       Relation{in(p.claw_width_m, p.gripper_width_m, 1.0),
                "affordance.gripper_width_m must be in claw_width_m..1"},
       Relation{in(0.1, p.max_length_m, 10.0), "affordance.max_length_m must be in 0.1..10"},

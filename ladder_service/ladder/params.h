@@ -98,6 +98,9 @@ struct MeasureParams {
   double rail_half_width_m = 0.0025;   ///< from the rail's axis to its inner face (recipe)
   double rail_width_switch_m = 0.010;  ///< an estimated half width is used above this (own)
   double prior_radius_m = 0.014;       ///< told in paper mode, which measures none (recipe)
+  double edge_lost_px = 0.25;          ///< of a pixel at an edge before something: what mixes in
+                                       ///< less of it than flying_step_m stays (own)
+  double edge_gained_px = 0.25;        ///< ... gained before nothing: half of it suffices (own)
   double radius_alike = 0.4;           ///< rungs whose radii differ by a smaller share are pooled
   double head_min_weight = 10.0;       ///< a head's covariance counts from here (recipe)
   double head_min_share = 0.8;         ///< ... and such heads must carry this share (recipe)
@@ -110,22 +113,33 @@ struct MeasureParams {
   double tilt_flag_sin = 0.0698;       ///< sin 4 deg off the right angle (recipe)
 };
 
-/// Where the heads sit, learnt while looking (default mode). head_alignment.h.
+/// Where the heads sit and how they err in range, learnt while looking (default mode).
+/// head_alignment.h.
 struct AlignParams {
   bool enabled = true;
-  double sigma_shift_m = 0.010;    ///< tolerance of a head's mounting per axis (quality)
+  double sigma_shift_m = 0.010;    ///< largest tolerance of a head's mounting per axis (quality)
   double sigma_turn_rad = 0.0175;  ///< 1 deg (quality)
-  double sigma_point_m = 0.004;    ///< a node's mean off a true surface: phase wiggle (own)
-  double points_per_plane = 12.0;  ///< a plane counts as so many independent points per head (own)
-  double points_per_bar = 4.0;     ///< a rung or rail likewise (own)
-  double min_weight = 1.0;         ///< points of a head in a node, to be counted (own)
-  double min_nodes = 3.0;          ///< such nodes of a head on a plane or bar (own)
-  int max_planes = 16;             ///< more planes: no correction (own)
-  double gain = 0.15;              ///< share of the way per frame (own)
-  double begin_misfit_m = 0.006;   ///< heads further apart than this are corrected ... (own)
-  double end_misfit_m = 0.0045;    ///< ... until they are nearer than this (own)
-  double max_shift_m = 0.03;       ///< corrections end here (own: 3 sigma)
-  double max_turn_rad = 0.0524;    ///< 3 deg (own)
+  double least_share = 0.1;       ///< of both, where heads agree; else misfit / sigma_shift_m (own)
+  double sigma_range_m = 0.003;   ///< error of the range that the heads share (quality)
+  double sigma_gravity = 0.002;   ///< sine of the lean of walls and floors (own: builders' 8 mm on
+                                  ///< 2.5 m, as 1.6 sigma)
+  double sigma_plane_m = 0.003;   ///< a node's mean off a true plane (own)
+  double keep = 0.99;             ///< older frames count so much less, each (own)
+  double frame_share = 0.2;       ///< of a frame's points are new: 1 - moment_forget
+  double corner_m = 0.12;         ///< nodes this near to another plane are left out (own)
+  double contested_m = 0.12;      ///< ... or this near to one off every plane: two gates of moments
+  double thick_max = 1.5;         ///< nodes whose variance across a plane is larger than the
+                                  ///< median by this factor are left out (own)
+  double upright_max_sin = 0.14;  ///< planes leaning less are walls and floors: 8 deg (own)
+  double min_weight = 1.0;        ///< points of a head in a node, to be counted (own)
+  double min_nodes = 3.0;         ///< such nodes of a head on a plane or bar (own)
+  int max_planes = 16;            ///< more planes: no correction (own)
+  double gain = 0.15;             ///< with which the misfit is averaged (own)
+  double begin_misfit_m = 0.006;  ///< heads further apart than this are reported ... (own)
+  double end_misfit_m = 0.0045;   ///< ... until they are nearer than this (own)
+  double max_shift_m = 0.03;      ///< corrections end here (own: 3 sigma)
+  double max_turn_rad = 0.0524;   ///< 3 deg (own)
+  double max_range_m = 0.009;     ///< 3 sigma (own)
 };
 
 /// Evidence (default mode).
@@ -145,11 +159,13 @@ struct TrackParams {
 
 /// Where a gripper may close (both modes).
 struct AffordanceParams {
-  double step_m = 0.005;           ///< sampling along the axis (S19)
-  double clearance_m = 0.020;      ///< along the rung, from an outlier or another rung (S19)
-  double claw_width_m = 0.034;     ///< (physics.md)
-  double claw_margin_m = 0.012;    ///< a stretch stays width + margin away from rails, whose place
-                                   ///< is known so well (own)
+  double step_m = 0.005;         ///< sampling along the axis (S19)
+  double clearance_m = 0.020;    ///< along the rung, from an outlier or another rung (S19)
+  double claw_width_m = 0.034;   ///< (physics.md)
+  double claw_margin_m = 0.012;  ///< a stretch stays width + margin away from rails, whose place
+                                 ///< is known so well (own) ...
+  double margin_sigmas = 3.0;  ///< ... or so many times what it wanders or mountings move it (own)
+  double max_wander_m = 0.02;  ///< a rung that wanders further is not offered (own)
   double gripper_width_m = 0.040;  ///< least length of an offered stretch (S19: 2 d_clear)
   double outlier_reach_m = 0.05;   ///< a foreign node this near to the axis is attached to it (own)
   double outlier_min_weight = 3.0;  ///< ... when it holds so many points (own)

@@ -115,6 +115,24 @@ TEST(Affordance, KeepsClearOfARailInTheMiddle) {
   EXPECT_LT(bench.estimate.grasps[0].position_m.y(), 0.0);
 }
 
+// A rung whose ends are known less well is offered so much less at either end; one known too badly
+// not at all.
+TEST(Affordance, WidensTheMarginToWhatIsKnown) {
+  Bench bench;
+  RungSurface vague = whole_surface();
+  vague.margin_m = 0.030;
+  bench.add(trusted_rung(0.40, 0.6), vague);
+  vague.margin_m = 0.5;
+  bench.add(trusted_rung(0.40, 0.9), vague);
+  bench.find();
+  const double claw_m = bench.params.affordance.claw_width_m;
+  EXPECT_EQ(bench.at(0, claw_m + 0.030 - 0.006), Reason::kRailTooNear);
+  EXPECT_EQ(bench.at(0, claw_m + 0.030 + 0.006), Reason::kNone);
+  EXPECT_EQ(bench.at(0, 0.40 - claw_m - 0.030 + 0.006), Reason::kRailTooNear);
+  EXPECT_EQ(bench.at(1, 0.2), Reason::kRailTooNear);
+  EXPECT_EQ(bench.estimate.grasps.size(), 1U);
+}
+
 // A rail that ends below the rung does not count.
 TEST(Affordance, IgnoresARailThatEndsElsewhere) {
   Bench bench;
