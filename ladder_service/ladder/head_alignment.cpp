@@ -164,8 +164,11 @@ void HeadAlignment::add_sample(const NodeCloud& cloud, const HeadMoment& m,
   const Vector3d point_m = m.mean_m.cast<double>();
   const Vector3d arm_m = point_m - cloud.head_position_m[m.head].cast<double>();
   const double range2_m2 = arm_m.squaredNorm();
-  const double thickness = normal.dot(covariance_of(m) * normal) / range2_m2;
-  samples_.push_back({m.head, point_m, range2_m2 / static_cast<double>(m.weight), thickness});
+  // A covariance about the points' own mean is too small by one of them.
+  const double points = static_cast<double>(m.weight);
+  const double thickness =
+      normal.dot(covariance_of(m) * normal) * points / ((points - 1.0) * range2_m2);
+  samples_.push_back({m.head, point_m, range2_m2 / points, thickness});
 }
 
 // How thick the nodes are is the noise. A node that holds more than the plane, a part of what

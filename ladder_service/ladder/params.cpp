@@ -133,7 +133,7 @@ std::string check_align(const AlignParams& p) {
       Relation{in(0.0, p.contested_m, 1.0), "align.contested_m must be in 0..1"},
       Relation{in(1.0, p.thick_max, 1e9), "align.thick_max must be in 1..1e9"},
       Relation{in(0.0, p.upright_max_sin, 0.5), "align.upright_max_sin must be in 0..0.5"},
-      Relation{in(1e-6, p.min_weight, 1e9), "align.min_weight must be in 1e-6..1e9"},
+      Relation{in(1.1, p.min_weight, 1e9), "align.min_weight must be in 1.1..1e9"},
       Relation{in(1.0, p.min_nodes, 1e6), "align.min_nodes must be in 1..1e6"},
       Relation{p.max_planes >= 1 && p.max_planes <= 1024, "align.max_planes must be in 1..1024"},
       Relation{in(0.0, p.gain, 1.0), "align.gain must be in 0..1"},

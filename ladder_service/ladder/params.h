@@ -164,7 +164,7 @@ struct AffordanceParams {
   double claw_width_m = 0.034;   ///< (physics.md)
   double claw_margin_m = 0.012;  ///< a stretch stays width + margin away from rails, whose place
                                  ///< is known so well (own) ...
-  double margin_sigmas = 3.0;  ///< ... or so many times what it wanders or mountings move it (own)
+  double margin_sigmas = 4.0;  ///< ... or so many times what it wanders or mountings move it (own)
   double max_wander_m = 0.02;  ///< a rung that wanders further is not offered (own)
   double gripper_width_m = 0.040;  ///< least length of an offered stretch (S19: 2 d_clear)
   double outlier_reach_m = 0.05;   ///< a foreign node this near to the axis is attached to it (own)
