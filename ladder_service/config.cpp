@@ -108,6 +108,7 @@ void read(ConfigTable table, ladder::AlignParams& params) {
   table.read("sigma_plane_m", params.sigma_plane_m);
   table.read("keep", params.keep);
   table.read("frame_share", params.frame_share);
+  table.read("far_m", params.far_m);
   table.read("corner_m", params.corner_m);
   table.read("contested_m", params.contested_m);
   table.read("thick_max", params.thick_max);

@@ -134,6 +134,7 @@ void HeadAlignment::learn_plane(const NodeCloud& cloud, const BarNodes& nodes, i
     if (is_contested(nodes, point_m)) continue;
     add_sample(cloud, m, surface.normal);
   }
+  if (!is_on_plane(cloud.planes[plane])) return;
   measure_noise();
   equations_.begin_surface(surface.normal);
   add_surface(cloud, surface);
@@ -183,6 +184,16 @@ void HeadAlignment::measure_noise() {
   const double most = params_.thick_max * *median;
   for (Sample& sample : samples_) sample.variance_m2 *= *median;
   std::erase_if(samples_, [&](const Sample& sample) { return sample.thickness > most; });
+}
+
+// Where most nodes lie elsewhere, even for heads that sit wrong, the plane is not theirs.
+bool HeadAlignment::is_on_plane(const Plane& plane) const {
+  const Vector3d normal = plane.normal.cast<double>();
+  const auto is_far = [&](const Sample& sample) {
+    return !(std::abs(normal.dot(sample.point_m) - plane.offset_m) < params_.far_m);
+  };
+  return 2 * std::count_if(samples_.begin(), samples_.end(), is_far) <
+         static_cast<std::ptrdiff_t>(samples_.size());
 }
 
 // Nodes there won points of both planes: their mean is on neither.

@@ -60,6 +60,7 @@ class HeadAlignment {
   void note_bar(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars, const Bar& bar);
   void add_sample(const NodeCloud& cloud, const HeadMoment& moment, const Eigen::Vector3d& normal);
   void measure_noise();
+  bool is_on_plane(const Plane& plane) const;
   bool is_at_corner(const NodeCloud& cloud, int plane, const Eigen::Vector3d& point_m) const;
   bool is_contested(const BarNodes& nodes, const Eigen::Vector3d& point_m) const;
   void add_surface(const NodeCloud& cloud, const Surface& surface);

@@ -129,6 +129,7 @@ std::string check_align(const AlignParams& p) {
       Relation{in(1e-4, p.sigma_plane_m, 1.0), "align.sigma_plane_m must be in 1e-4..1"},
       Relation{in(0.0, p.keep, 0.9999), "align.keep must be in 0..0.9999"},
       Relation{in(0.0, p.frame_share, 1.0), "align.frame_share must be in 0..1"},
+      Relation{in(0.0, p.far_m, 10.0), "align.far_m must be in 0..10"},
       Relation{in(0.0, p.corner_m, 1.0), "align.corner_m must be in 0..1"},
       Relation{in(0.0, p.contested_m, 1.0), "align.contested_m must be in 0..1"},
       Relation{in(1.0, p.thick_max, 1e9), "align.thick_max must be in 1..1e9"},

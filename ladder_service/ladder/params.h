@@ -126,12 +126,13 @@ struct AlignParams {
   double sigma_plane_m = 0.003;   ///< a node's mean off a true plane (own)
   double keep = 0.99;             ///< older frames count so much less, each (own)
   double frame_share = 0.2;       ///< of a frame's points are new: 1 - moment_forget
+  double far_m = 0.08;            ///< planes most of whose nodes are farther off are none (own)
   double corner_m = 0.12;         ///< nodes this near to another plane are left out (own)
   double contested_m = 0.12;      ///< ... or this near to one off every plane: two gates of moments
   double thick_max = 1.5;         ///< nodes whose variance across a plane is larger than the
                                   ///< median by this factor are left out (own)
   double upright_max_sin = 0.14;  ///< planes leaning less are walls and floors: 8 deg (own)
-  double min_weight = 1.0;        ///< points of a head in a node, to be counted (own)
+  double min_weight = 3.0;        ///< points of a head in a node, to be counted, > 1 (own)
   double min_nodes = 3.0;         ///< such nodes of a head on a plane or bar (own)
   int max_planes = 16;            ///< more planes: no correction (own)
   double gain = 0.15;             ///< with which the misfit is averaged (own)
