@@ -177,7 +177,7 @@ void Monitor::check_stop(std::int64_t now_us, int axis_index, std::int32_t targe
 
 void Monitor::check_release(std::int64_t now_us, int axis_index, std::int32_t target) {
   Leg& leg = legs_[static_cast<std::size_t>(leg_of(axis_index))];
-  const bool opens = angle_rad(axis_index, target) > params_.jaw_open_rad;
+  const bool opens = angle_rad(axis_index, target) > leg.held_jaw_rad + params_.jaw_opens_rad;
   const bool begins = opens && !leg.open_commanded;
   leg.open_commanded = opens;
   const Axis& jaw = axes_[static_cast<std::size_t>(axis_index)];
@@ -258,6 +258,12 @@ void Monitor::on_truth(const PlantTruth& truth) {
   for (int index = 0; index < kNumLegs; ++index) {
     Leg& leg = legs_[static_cast<std::size_t>(index)];
     const LegTruth& now = truth.legs[static_cast<std::size_t>(index)];
+    const int jaw_index = axis_of(index, kJointsPerLeg - 1);
+    const Axis& jaw = axes_[static_cast<std::size_t>(jaw_index)];
+    if (now.holds && jaw.has_measured) {
+      const double jaw_rad = angle_rad(jaw_index, jaw.measured);
+      leg.held_jaw_rad = leg.holds ? std::min(leg.held_jaw_rad, jaw_rad) : jaw_rad;
+    }
     leg.holds = now.holds;
     leg.confirmed = now.bears && now.touch;
     if (leg.confirmed) leg.confirmed_us = truth.time_us;

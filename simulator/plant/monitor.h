@@ -39,7 +39,7 @@ struct MonitorParams {
   std::int64_t cycle_us = 10'000;
   std::array<DriveParams, kNumAxes> drives;  ///< their counts, signs and offsets
   std::array<AxisRules, kNumAxes> rules;
-  double jaw_open_rad = -0.36;  ///< a jaw commanded beyond lets a rung go
+  double jaw_opens_rad = 0.08;  ///< commanded so far beyond where it stood on it, it lets a rung go
   std::int64_t stop_reaction_us = 20'000;
   std::int64_t stop_run_out_us = 150'000;
   /// So much faster any joint may get while it runs out: it follows its path, and where that bends
@@ -110,6 +110,7 @@ class Monitor {
     std::int64_t taken_us = -1'000'000'000;  ///< by the plant
     bool open_commanded = false;
     std::int64_t told_open_us = -1'000'000'000;  ///< last target beyond where the jaw stands
+    double held_jaw_rad = 0.0;                   ///< least angle on the rung that it holds, or held
   };
 
   void on_master_frame(const CarriedFrame& carried);

@@ -83,6 +83,22 @@ TEST(Monitor, SeesTwoClawsOpening) {
   EXPECT_THAT(run.broken(), ElementsAre(1, 3)) << run.first();
 }
 
+// Thicker rungs hold the jaws wider open: told to stand where they stand is no opening, wider is.
+TEST(Monitor, KnowsAJawOnAThickRung) {
+  PlantParams params = gripping_params();
+  for (LadderRung& rung : params.rungs) rung.radius_m = 0.018;
+  WatchedBench run(params);
+  run.start();
+  const double jaw_rad = run.bench.plant.drive(axis_of(0, 3)).measured_rad();
+  EXPECT_GT(jaw_rad, -0.25);
+  for (const int leg : {0, 3}) run.bench.move_jaw(leg, jaw_rad + 0.01);
+  run.cycles(30);
+  EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+  for (const int leg : {0, 3}) run.bench.move_jaw(leg, jaw_rad + 0.3);
+  run.cycles(30);
+  EXPECT_THAT(run.broken(), ElementsAre(1, 3)) << run.first();
+}
+
 // A grasp that a breaking rung took away is no fault of the controller; opening another one a
 // second later is.
 TEST(Monitor, ExcusesThePlantOnlyForAWhile) {
