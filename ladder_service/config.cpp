@@ -144,6 +144,7 @@ void read(ConfigTable table, ladder::AffordanceParams& params) {
   table.read("claw_margin_m", params.claw_margin_m);
   table.read("margin_sigmas", params.margin_sigmas);
   table.read("max_wander_m", params.max_wander_m);
+  table.read("max_side_sigma_m", params.max_side_sigma_m);
   table.read("gripper_width_m", params.gripper_width_m);
   table.read("outlier_reach_m", params.outlier_reach_m);
   table.read("outlier_min_weight", params.outlier_min_weight);

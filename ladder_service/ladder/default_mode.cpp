@@ -40,9 +40,12 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
   for (const int i : order_) {
     const BarTrack& track = tracks[i];
     estimate.rungs.push_back(to_rung(track, confirmed));
-    const bool is_steady = track.wander_m() <= params_.affordance.max_wander_m;
+    const double range_m = std::sqrt((track.bar.middle_m() - body_m).squaredNorm());
+    const double side_sigma_m = detector_.alignment().side_sigma_m(range_m);
+    const bool is_known = track.wander_m() <= params_.affordance.max_wander_m &&
+                          side_sigma_m <= params_.affordance.max_side_sigma_m;
     surfaces.push_back({track.bar.seen, track.bar.attached, track.bar.tilt_sin,
-                        margin_m(track, body_m), is_steady});
+                        margin_m(track, side_sigma_m), is_known});
   }
   write_rails(found, estimate, rails);
 }
@@ -91,10 +94,8 @@ bool DefaultMode::is_same_bar(const MeasuredBar& a, const MeasuredBar& b) const 
 
 // How far the ends may be off along the rung: by what the rung wanders from frame to frame, and by
 // what the heads' mountings move all they see.
-double DefaultMode::margin_m(const BarTrack& track, const Eigen::Vector3d& body_m) const {
-  const double range_m = std::sqrt((track.bar.middle_m() - body_m).squaredNorm());
-  return params_.affordance.margin_sigmas *
-         std::max(track.wander_along_m(), detector_.alignment().side_sigma_m(range_m));
+double DefaultMode::margin_m(const BarTrack& track, double side_sigma_m) const {
+  return params_.affordance.margin_sigmas * std::max(track.wander_along_m(), side_sigma_m);
 }
 
 Rung DefaultMode::to_rung(const BarTrack& track, bool confirmed) const {

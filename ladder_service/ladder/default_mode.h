@@ -28,7 +28,7 @@ class DefaultMode {
   bool is_published(const BarTrack& track) const;
   void choose_published(const std::vector<BarTrack>& tracks);
   bool is_same_bar(const MeasuredBar& a, const MeasuredBar& b) const;
-  double margin_m(const BarTrack& track, const Eigen::Vector3d& body_m) const;
+  double margin_m(const BarTrack& track, double side_sigma_m) const;
   Rung to_rung(const BarTrack& track, bool confirmed) const;
   void write_rails(const Detections& found, LadderEstimate& estimate,
                    std::vector<RailLine>& rails) const;

@@ -155,6 +155,7 @@ std::string check_affordance(const AffordanceParams& p) {
       Relation{in(0.0, p.claw_margin_m, 1.0), "affordance.claw_margin_m must be in 0..1"},
       Relation{in(0.0, p.margin_sigmas, 100.0), "affordance.margin_sigmas must be in 0..100"},
       Relation{in(0.0, p.max_wander_m, 10.0), "affordance.max_wander_m must be in 0..10"},
+      Relation{in(0.0, p.max_side_sigma_m, 10.0), "affordance.max_side_sigma_m must be in 0..10"},
       Relation{in(p.claw_width_m, p.gripper_width_m, 1.0),
                "affordance.gripper_width_m must be in claw_width_m..1"},
       Relation{in(0.1, p.max_length_m, 10.0), "affordance.max_length_m must be in 0.1..10"},

@@ -167,8 +167,9 @@ struct AffordanceParams {
                                  ///< is known so well (own) ...
   double margin_sigmas = 4.0;  ///< ... or so many times what it wanders or mountings move it (own)
   double max_wander_m = 0.02;  ///< a rung that wanders further is not offered (own)
-  double gripper_width_m = 0.040;  ///< least length of an offered stretch (S19: 2 d_clear)
-  double outlier_reach_m = 0.05;   ///< a foreign node this near to the axis is attached to it (own)
+  double max_side_sigma_m = 0.006;  ///< nor one that heads this badly mounted may misplace (own)
+  double gripper_width_m = 0.040;   ///< least length of an offered stretch (S19: 2 d_clear)
+  double outlier_reach_m = 0.05;  ///< a foreign node this near to the axis is attached to it (own)
   double outlier_min_weight = 3.0;  ///< ... when it holds so many points (own)
   double seen_reach_m = 0.015;      ///< a node supports its own extent and this much beyond (own)
   double max_tilt_sin = 0.2588;     ///< sin 15 deg: no offer on a more tilted rung (quality)
