@@ -2,7 +2,6 @@
 #include "climb/limb_cycle.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace climb {
 namespace {
@@ -323,25 +322,6 @@ void LimbCycle::finish_closing(const LimbInput& input) {
     confirmation_.conclude_missed();
     take(LimbEvent::kMissed);
   }
-}
-
-void LimbCycle::pull(const LimbInput& input, bool arrived) {
-  const double force_N = rung_force_N(input).norm();
-  const bool is_further = stage_ == Stage::kOut;
-  const double enough_N = is_further ? motion_.pull_test_min_N : motion_.pull_test_max_N;
-  if (!arrived && (input.stop || !(force_N >= enough_N))) return;
-  // A stretched leg is soft: what stays in the claw is pulled further, to the force asked for.
-  const bool stays = confirmation_.witness().closed() &&
-                     std::abs(pull_slip_m(input)) < motion_.pull_test_max_slip_m;
-  if (is_further || !stays || force_N >= motion_.pull_test_min_N) return finish_pull(input);
-  stage_ = Stage::kOut;
-  const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
-  move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_further_m), pull_m_s());
-}
-
-double LimbCycle::pull_slip_m(const LimbInput& input) const {
-  const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
-  return (kinematics_.foot_m(leg_, input.angles_rad) - from_m).z();
 }
 
 void LimbCycle::finish_pull(const LimbInput& input) {
