@@ -98,20 +98,6 @@ class ClimbProcess : public ::testing::Test {
     message.order = order;
     bus_->publish(channels::kCommand, message);
   }
-  /// Within 5 s.
-  bool plant_shows(const std::string& words, bool wanted) const {
-    for (int i = 0; i < 100; ++i) {
-      if ((plant_says().find(words) != std::string::npos) == wanted) return true;
-      usleep(50'000);
-    }
-    return false;
-  }
-  /// The newest line that the plant printed.
-  std::string plant_says() const {
-    const std::string text = plant_->output();
-    const std::size_t end = text.rfind('\n');
-    return text.substr(text.rfind('\n', end - 1) + 1, end);
-  }
 
   std::string url_;
   std::string folder_;
@@ -142,7 +128,7 @@ TEST_F(ClimbProcess, WholeRun) {
   ASSERT_EQ(command({"hold"}), 0) << said_ << climber->output();
   EXPECT_NE(poses_->take(0), nullptr);
   ASSERT_EQ(command({"disarm"}), 0) << said_;
-  EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
 }
 
 // The dock is taken away and brought back: disarmed there, the claws open and the dock carries.
@@ -151,11 +137,11 @@ TEST_F(ClimbProcess, DisarmsInTheDock) {
   ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
   ASSERT_TRUE(arm()) << said_ << climber->output();
   plant_->signal(SIGUSR1);
-  ASSERT_TRUE(plant_shows("docked", false)) << plant_says();
+  ASSERT_TRUE(plant_->comes_to_show("docked", false)) << plant_->last_line();
   plant_->signal(SIGUSR1);
-  ASSERT_TRUE(plant_shows("docked", true)) << plant_says();
+  ASSERT_TRUE(plant_->comes_to_show("docked")) << plant_->last_line();
   ASSERT_EQ(command({"disarm", "--wait", "DISARMED"}), 0) << said_ << climber->output();
-  EXPECT_TRUE(plant_shows("enabled  0  claws - - - -", true)) << plant_says();
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0  claws - - - -")) << plant_->last_line();
   EXPECT_THAT(plant_->output(), Not(HasSubstr("FALLEN")));
 }
 
@@ -171,7 +157,7 @@ TEST_F(ClimbProcess, EndInHoldIsNoFault) {
   EXPECT_THAT(told, HasSubstr("handed over"));
   EXPECT_THAT(told, Not(HasSubstr("FAULT_HOLD")));
   EXPECT_THAT(told, Not(HasSubstr("candump")));
-  EXPECT_TRUE(plant_shows("enabled  0", true)) << plant_says();
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
 }
 
 // Asked to end while climbing: the step in the air is finished, then the drives hold by themselves.
@@ -185,8 +171,8 @@ TEST_F(ClimbProcess, EndsHolding) {
   climber->signal(SIGTERM);
   EXPECT_EQ(climber->wait(60s), 0);
   EXPECT_THAT(climber->output(), HasSubstr("handed over"));
-  EXPECT_THAT(plant_says(), Not(HasSubstr("FALLEN")));
-  EXPECT_THAT(plant_says(), Not(HasSubstr(" - ")));  // no claw without a rung
+  EXPECT_THAT(plant_->output(), Not(HasSubstr("FALLEN")));
+  EXPECT_THAT(plant_->last_line(), Not(HasSubstr(" - ")));  // no claw without a rung
 }
 
 // An order of another run and an order that was given before change nothing and are told so.
@@ -212,7 +198,7 @@ TEST_F(ClimbProcess, RefusesReplayedOrders) {
   ASSERT_TRUE(
       wait_for([](const climb_state_t& m) { return m.order_verdict == m.VERDICT_REPLAYED; }));
   EXPECT_EQ(now_.state, now_.STATE_DISARMED);
-  EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
 }
 
 // A second controller of this host refuses to start; so does one that only hears the first on the
@@ -244,7 +230,7 @@ TEST_F(ClimbProcess, KilledControllerLeavesHoldingDrives) {
   climber->signal(SIGKILL);
   EXPECT_EQ(climber->wait(5s), 128 + SIGKILL);
   usleep(600'000);
-  EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
   climber = controller(can());
   const std::int64_t old_session = now_.session_id;
   ASSERT_TRUE(wait_for([old_session](const climb_state_t& m) {
@@ -268,7 +254,7 @@ TEST_F(ClimbProcess, IsArmedOnTheLadderAfterAKill) {
   })) << climber->output();
   EXPECT_TRUE(arm()) << said_ << climber->output();
   EXPECT_THAT(plant_->output(), Not(HasSubstr("FALLEN")));
-  EXPECT_THAT(plant_says(), Not(HasSubstr(" - ")));  // no claw without a rung
+  EXPECT_THAT(plant_->last_line(), Not(HasSubstr(" - ")));  // no claw without a rung
 }
 
 // Stopped in its tracks for a while, as by a debugger: the drives have stopped by themselves;
@@ -280,13 +266,13 @@ TEST_F(ClimbProcess, HungControllerStaysStopped) {
   ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.has_targets != 0; }));
   climber->signal(SIGSTOP);
   usleep(300'000);
-  EXPECT_TRUE(plant_shows("enabled  0", true)) << plant_says();
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
   climber->signal(SIGCONT);
   ASSERT_TRUE(wait_for([](const climb_state_t& m) { return m.state == m.STATE_FAULT_HOLD; }))
       << climber->output();
   EXPECT_GT(now_.overruns, 0);
   usleep(300'000);
-  EXPECT_THAT(plant_says(), HasSubstr("enabled  0"));
+  EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
 }
 
 // The E-stop line stops everything and stays latched after its release until the operator's reset;

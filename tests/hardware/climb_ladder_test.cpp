@@ -53,9 +53,9 @@ TEST(LadderOnKernel, TenRungs) {
   ASSERT_TRUE(took_us) << bench.problems();
   EXPECT_EQ(bench.now().state, State::STATE_HOLD) << bench.problems();
   EXPECT_GE(highest - first, kRungsToClimb) << bench.problems();
-  EXPECT_THAT(bench.plant_says(), Not(HasSubstr("FALLEN")));
+  EXPECT_THAT(bench.plant().output(), Not(HasSubstr("FALLEN")));
   std::printf("%d rungs in %.0f s of the guest's clock; plant: %s\n", highest - first,
-              1e-6 * static_cast<double>(*took_us), bench.plant_says().c_str());
+              1e-6 * static_cast<double>(*took_us), bench.plant().last_line().c_str());
   std::printf(
       "%lld cycles, %lld overruns, a cycle's work p50 %d p99 %d us, late p99 %d max %d us\n",
       static_cast<long long>(bench.now().cycles), static_cast<long long>(bench.now().overruns),

@@ -41,8 +41,8 @@ TEST(ClimbProcessOnKernel, WholeRun) {
   })) << bench.problems();
   ASSERT_EQ(bench.command({"hold"}), 0) << bench.problems();
   ASSERT_EQ(bench.command({"disarm"}), 0) << bench.problems();
-  EXPECT_THAT(bench.plant_says(), HasSubstr("enabled  0"));
-  EXPECT_THAT(bench.plant_says(), Not(HasSubstr("FALLEN")));
+  EXPECT_TRUE(bench.plant().comes_to_show("enabled  0")) << bench.problems();
+  EXPECT_THAT(bench.plant().output(), Not(HasSubstr("FALLEN")));
   std::printf(
       "%lld cycles, %lld overruns, a cycle's work p50 %d p99 %d us, late p99 %d max %d us\n",
       static_cast<long long>(bench.now().cycles), static_cast<long long>(bench.now().overruns),

@@ -87,16 +87,9 @@ class ProcessBench {
   runtime::Bus& bus() { return bus_; }
   support::ChildProcess& plant() { return plant_; }
   support::ChildProcess& controller() { return *controller_; }
-  /// The newest whole line that the plant printed.
-  std::string plant_says() const {
-    const std::string text = plant_.output();
-    const std::size_t end = text.rfind('\n');
-    const std::size_t begin = text.rfind('\n', end - 1) + 1;
-    return text.substr(begin, end - begin);
-  }
   std::string problems() const {
     return "ladder-command: " + said_ + "\ncontroller: " + controller_->output() +
-           "\nplant: " + plant_says();
+           "\nplant: " + plant_.last_line();
   }
 
   static constexpr const char* kUrl = runtime::Bus::kDefaultUrl;

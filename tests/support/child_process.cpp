@@ -71,4 +71,20 @@ std::string ChildProcess::output() const {
   return text.str();
 }
 
+std::string ChildProcess::last_line() const {
+  const std::string text = output();
+  const std::size_t end = text.rfind('\n');
+  if (end == std::string::npos || end == 0) return "";
+  const std::size_t begin = text.rfind('\n', end - 1) + 1;
+  return text.substr(begin, end - begin);
+}
+
+bool ChildProcess::comes_to_show(const std::string& words, bool wanted) const {
+  for (int i = 0; i < 100; ++i) {
+    if ((last_line().find(words) != std::string::npos) == wanted) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return false;
+}
+
 }  // namespace support

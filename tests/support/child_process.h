@@ -25,6 +25,12 @@ class ChildProcess {
   std::optional<int> wait(std::chrono::milliseconds timeout);
   /// What it printed so far.
   std::string output() const;
+  /// The newest whole line that it printed.
+  std::string last_line() const;
+  /// Waits until its newest line has the words (wanted) or is without them; false after 5 s. What a
+  /// program prints from time to time is older than the order just carried out: wait, do not look
+  /// once.
+  bool comes_to_show(const std::string& words, bool wanted = true) const;
   int pid() const { return pid_; }
 
  private:
