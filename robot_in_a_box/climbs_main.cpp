@@ -78,22 +78,16 @@ Task task_of(const Arguments& arguments, std::uint64_t seed, bool damaged) {
 }
 
 std::string json_line(const Task& task, ClimbEnd end, FullClimb& full, double wall_s) {
-  const simulator::Figures& f = full.climb().figures();
-  char text[1200];
-  std::snprintf(
-      text, sizeof text,
-      "{\"seed\": %llu, \"damage\": \"%s\", \"rungs\": %d, \"spacing_m\": %.3f, \"end\": \"%s\", "
-      "\"reason\": "
-      "\"%s\", \"rungs_climbed\": %d, \"falls\": %d, \"grasps_tried\": %d, \"grasps_failed\": %d, "
-      "\"unsafe_grasps\": %d, \"min_support\": %d, \"seconds\": %.1f, \"peak_joint_torque_Nm\": "
-      "%.1f, \"peak_grip_N\": %.0f, \"pose_drift_mm\": %.1f, \"violations\": %zu, \"wall_s\": "
-      "%.1f}",
-      static_cast<unsigned long long>(task.seed), task.damage.c_str(),
-      task.params.climb.scene.num_rungs, task.params.climb.scene.spacing_m, name(end),
-      full.climb().reason().c_str(), f.rungs_climbed, f.falls, f.grasps_tried, f.grasps_failed,
-      f.num_unsafe_grasps, f.min_support, f.seconds, f.peak_joint_torque_Nm, f.peak_grip_N,
-      f.pose_drift_mm, full.climb().box().monitor().violations().size(), wall_s);
-  return text;
+  char ladder[200];
+  std::snprintf(ladder, sizeof ladder,
+                "{\"seed\": %llu, \"damage\": \"%s\", \"rungs\": %d, \"spacing_m\": %.3f, ",
+                static_cast<unsigned long long>(task.seed), task.damage.c_str(),
+                task.params.climb.scene.num_rungs, task.params.climb.scene.spacing_m);
+  char last[80];
+  std::snprintf(last, sizeof last, ", \"violations\": %zu, \"wall_s\": %.1f}",
+                full.climb().box().monitor().violations().size(), wall_s);
+  return ladder + ("\"end\": \"" + std::string(name(end))) + "\", \"reason\": \"" +
+         full.climb().reason() + "\", " + simulator::json_members(full.climb().figures()) + last;
 }
 
 std::string crashed_line(const Task& task) {

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "simulator/plant/truth_perception.h"
+
 namespace robot_in_a_box {
 namespace {
 
 constexpr std::int64_t kDelay_us = 20'000;  ///< from measurement to message
-constexpr float kVariance_m2 = 4e-6F;
+constexpr float kSigma_m = 0.002F;
 
 Eigen::Vector3d within(double limit_m, base::Rng& rng) {
   Eigen::Vector3d error;
@@ -65,41 +67,18 @@ void PerceivedLadder::add_rung(int index, const simulator::LadderRung& rung,
       bias_m_[static_cast<std::size_t>(index)] + within(params_.jitter_m, rng_);
   const Eigen::Vector3d half_m = 0.5 * (rung.end1_m - rung.end0_m);
   const Eigen::Vector3d turned_m = tilt_rad_[static_cast<std::size_t>(index)].cross(half_m);
-  const Eigen::Vector3f left_m = (T_odom_world * (rung.end1_m + turned_m) + error_m).cast<float>();
-  const Eigen::Vector3f right_m = (T_odom_world * (rung.end0_m - turned_m) + error_m).cast<float>();
-  const double length_m = (rung.end1_m - rung.end0_m).norm();
   const bool is_damaged =
       index == withdrawn_rung ||
       std::find(damaged_rungs.begin(), damaged_rungs.end(), index) != damaged_rungs.end();
-  ladder_msgs::ladder_t& m = message_;
-  m.interval_rung.push_back(m.num_rungs);
-  m.interval_from_m.push_back(static_cast<float>(params_.stretch_end_m));
-  m.interval_to_m.push_back(static_cast<float>(length_m - params_.stretch_end_m));
-  m.interval_reason.push_back(static_cast<std::uint8_t>(m.REASON_NONE));
-  ++m.num_intervals;
-  m.rung_id.push_back(index);
-  m.rung_state.push_back(static_cast<std::uint8_t>(m.RUNG_TRUSTED));
-  m.rung_age.push_back(12);
-  m.rung_confidence.push_back(1.0F);
-  m.rung_evaluation.push_back(1.0F);
-  m.rung_inliers.push_back(20);
-  m.rung_outliers.push_back(0);
-  m.rung_x0_m.push_back(left_m.x());
-  m.rung_y0_m.push_back(left_m.y());
-  m.rung_z0_m.push_back(left_m.z());
-  m.rung_x1_m.push_back(right_m.x());
-  m.rung_y1_m.push_back(right_m.y());
-  m.rung_z1_m.push_back(right_m.z());
-  m.rung_radius_m.push_back(static_cast<float>(rung.radius_m));
-  m.rung_sag_m.push_back(0.0F);
-  m.rung_flags.push_back(is_damaged ? m.FLAG_BENT : std::int16_t{0});
-  m.rung_cov_xx_m2.push_back(kVariance_m2);
-  m.rung_cov_xy_m2.push_back(0.0F);
-  m.rung_cov_xz_m2.push_back(0.0F);
-  m.rung_cov_yy_m2.push_back(kVariance_m2);
-  m.rung_cov_yz_m2.push_back(0.0F);
-  m.rung_cov_zz_m2.push_back(kVariance_m2);
-  ++m.num_rungs;
+  simulator::ToldRung told;
+  told.id = index;
+  told.left_m = (T_odom_world * (rung.end1_m + turned_m) + error_m).cast<float>();
+  told.right_m = (T_odom_world * (rung.end0_m - turned_m) + error_m).cast<float>();
+  told.radius_m = static_cast<float>(rung.radius_m);
+  told.sigma_m = kSigma_m;
+  told.from_end_m = static_cast<float>(params_.stretch_end_m);
+  if (is_damaged) told.flags = ladder_msgs::ladder_t::FLAG_BENT;
+  simulator::append(message_, told);
 }
 
 void PerceivedLadder::spoil() {

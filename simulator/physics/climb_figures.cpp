@@ -3,8 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace simulator {
+
+std::string json_members(const Figures& f) {
+  char text[400];
+  std::snprintf(
+      text, sizeof text,
+      "\"rungs_climbed\": %d, \"falls\": %d, \"grasps_tried\": %d, \"grasps_failed\": %d, "
+      "\"unsafe_grasps\": %d, \"min_support\": %d, \"seconds\": %.1f, "
+      "\"peak_joint_torque_Nm\": %.1f, \"peak_grip_N\": %.0f, \"pose_drift_mm\": %.1f",
+      f.rungs_climbed, f.falls, f.grasps_tried, f.grasps_failed, f.num_unsafe_grasps, f.min_support,
+      f.seconds, f.peak_joint_torque_Nm, f.peak_grip_N, f.pose_drift_mm);
+  return text;
+}
 
 void ClimbFigures::see(const ClimbMoment& moment) {
   const PlantTruth& truth = moment.truth;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -42,6 +43,10 @@ struct Figures {
   double pose_drift_mm = 0.0;  ///< the estimate's largest error since the dock let go
   int num_unsafe_grasps = 0;   ///< tries on a rung that is not sound
 };
+
+/// The members of a JSON object, one after another without braces, under the names of Figures with
+/// num_ left away.
+std::string json_members(const Figures& figures);
 
 class ClimbFigures {
  public:

@@ -67,20 +67,11 @@ void ClimbWitness::tell_progress(const PlantTruth& truth) {
 }
 
 bool ClimbWitness::write(const std::string& path) const {
-  const Figures& f = figures_.told();
-  char text[900];
-  std::snprintf(text, sizeof text,
-                "{\n  \"top_reached\": %s,\n  \"rungs_climbed\": %d,\n  \"falls\": %d,\n"
-                "  \"grasps_tried\": %d,\n  \"grasps_failed\": %d,\n  \"unsafe_grasps\": %d,\n"
-                "  \"min_support\": %d,\n  \"seconds\": %.1f,\n  \"peak_joint_torque_Nm\": %.1f,\n"
-                "  \"peak_grip_N\": %.0f,\n  \"pose_drift_mm\": %.1f,\n"
-                "  \"real_time_factor\": %.3f\n}\n",
-                top_reached_ ? "true" : "false", f.rungs_climbed, f.falls, f.grasps_tried,
-                f.grasps_failed, f.num_unsafe_grasps, f.min_support, f.seconds,
-                f.peak_joint_torque_Nm, f.peak_grip_N, f.pose_drift_mm,
-                wall_s_ > 0.0 ? simulated_s_ / wall_s_ : 0.0);
+  char real_time[60];
+  std::snprintf(real_time, sizeof real_time, "%.3f", wall_s_ > 0.0 ? simulated_s_ / wall_s_ : 0.0);
   std::ofstream file(path);
-  file << text;
+  file << "{\"top_reached\": " << (top_reached_ ? "true" : "false") << ", "
+       << json_members(figures_.told()) << ", \"real_time_factor\": " << real_time << "}\n";
   return static_cast<bool>(file.flush());
 }
 

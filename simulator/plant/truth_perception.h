@@ -13,6 +13,19 @@
 
 namespace simulator {
 
+/// A rung as perception tells it that is sure of it.
+struct ToldRung {
+  int id = 0;
+  Eigen::Vector3f left_m, right_m;  ///< its ends, odom, as the robot sees them
+  float radius_m = 0.0F;
+  float sigma_m = 0.001F;    ///< of each coordinate
+  float from_end_m = 0.02F;  ///< graspable but for so much at each end
+  std::int16_t flags = 0;
+};
+
+/// Appends a trusted rung with one graspable stretch.
+void append(ladder_msgs::ladder_t& message, const ToldRung& rung);
+
 /// Every whole rung, trusted, at its true place (1 mm of error told), graspable up to 20 mm from
 /// its ends. Odom as in truth_message(); ids are the rungs' indices.
 ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Vector3d& odom_origin_m,
