@@ -8,6 +8,9 @@ namespace {
 
 constexpr std::int64_t kSuspicion_us = 1'000'000;  ///< longer ago, one sighting proves nothing
 
+constexpr double kAsWell =
+    0.9;  ///< of the longest stretch that was graspable, and nothing hides it
+
 Eigen::Vector3d middle_m(const climb::RungView& rung) {
   return 0.5 * (rung.end0_m + rung.end1_m);
 }
@@ -126,11 +129,13 @@ void RungMemory::learn(std::int64_t now_us, int index, bool is_ahead,
     if (!(learned.graspable_m > 0.0) && learned.damage == 0) forget(known);
     return;
   }
-  // Where own legs hide parts of it: the place is news, its thickness is not, and what could be
-  // grasped of it only when it is more.
+  // Where own legs hide parts of it, place and certainty are news; its thickness is none, nor what
+  // could be grasped of it, unless it is seen about as well as ever.
   known->rung.end0_m = seen.end0_m;
   known->rung.end1_m = seen.end1_m;
+  known->rung.covariance_m2 = seen.covariance_m2;
   known->seen_us = now_us;
+  if (learned.graspable_m >= kAsWell * known->graspable_m) known->rung.radius_m = seen.radius_m;
   if (learned.graspable_m <= known->graspable_m) return;
   known->stretches = learned.stretches;
   known->num_stretches = learned.num_stretches;

@@ -202,5 +202,36 @@ TEST_F(RungMemoryTest, PlaceIsNews) {
   EXPECT_NEAR(snapshot_.rungs[0].end0_m.z(), 0.61, 1e-9);
 }
 
+/// The first look at a rung is no better than others: while nothing hides it, its thickness is what
+/// was seen last, and so is how well its place is known.
+TEST_F(RungMemoryTest, ThicknessAndCertaintyAreNews) {
+  see(0.6);
+  snapshot_.rungs[0].radius_m = 0.022;
+  snapshot_.rungs[0].covariance_m2 = Eigen::Matrix3d::Identity() * 1e-4;
+  complete(0.0, 0.0);
+  see(0.6);
+  snapshot_.rungs[0].radius_m = 0.014;
+  snapshot_.rungs[0].covariance_m2 = Eigen::Matrix3d::Identity() * 9e-6;
+  complete(1.0, 0.0);
+  see_nothing();
+  complete(2.0, 0.0);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_DOUBLE_EQ(snapshot_.rungs[0].radius_m, 0.014);
+  EXPECT_DOUBLE_EQ(snapshot_.rungs[0].covariance_m2(2, 2), 9e-6);
+}
+
+/// A leg before a rung spoils its thickness, not that which is remembered.
+TEST_F(RungMemoryTest, ThicknessOfAHiddenRungIsNoNews) {
+  see(0.6);
+  snapshot_.rungs[0].radius_m = 0.014;
+  complete(0.0, 0.0);
+  see(0.6);
+  snapshot_.rungs[0].radius_m = 0.009;
+  snapshot_.stretches[0].to_m = snapshot_.stretches[0].from_m + 0.1;
+  complete(1.0, 0.0);
+  ASSERT_EQ(snapshot_.rungs.size(), 1U);
+  EXPECT_DOUBLE_EQ(snapshot_.rungs[0].radius_m, 0.014);
+}
+
 }  // namespace
 }  // namespace climb_controller
