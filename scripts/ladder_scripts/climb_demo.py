@@ -3,6 +3,7 @@
 
 import argparse
 import json
+import math
 import os
 import pathlib
 import signal
@@ -10,8 +11,8 @@ import subprocess
 import sys
 import time
 
-from ladder_scripts import robot_faults
-from ladder_scripts.climb_operator import ClimbOperator, GaveUp, TimeIsUp
+from ladder_scripts import robot_faults, soak
+from ladder_scripts.climb_operator import MAX_STOPS, ClimbOperator, GaveUp, TimeIsUp
 from ladder_scripts.live_robot import LATCHED, REPOSITORY, LiveRobot, Setup
 
 LIMBS = ("FL", "FR", "RL", "RR")
@@ -30,6 +31,7 @@ def arguments():
     parser.add_argument("--seconds", type=float)
     parser.add_argument("--json", type=pathlib.Path, required=True)
     parser.add_argument("--down", action="store_true")
+    parser.add_argument("--soak", action="store_true", help="up and down until the time is up; memory, losses and watchdogs have bounds")
     parser.add_argument("--fault", action="append", default=[])
     parser.add_argument("--set", action="append", default=[], dest="overrides")
     parser.add_argument("--spy", action="store_true")
@@ -54,6 +56,7 @@ class Screen:
         self.said = None
         self.faults = []
         self.warned_s = {}  # when a text was told last
+        self.ways = []  # how each way of a soak ended: top, dock, held
         self.num_blind = 0  # times that perception was too late, with no fault that explains it
 
     def tell(self, text):
@@ -95,12 +98,35 @@ class Screen:
         return f"  {time.monotonic() - robot.started_s:6.1f} s  {robot.state_name}  {limbs}  {height}  {latency}  cycle {robot.state['cycle_p99_us']} us"
 
 
-def climb(operator, screen, down):
+def up_and_down(operator, screen):
+    """Until the time is up or it gives up. Held on the way it turns round."""
+    next_way = {"top": "the top; back down", "dock": "at the bottom; up again"}
+    down = False
+    while True:
+        end = operator.climb(down)
+        screen.tell(next_way.get(end, f"held ({operator.robot.reason}); the other way"))
+        screen.ways.append(end)
+        down = not down
+
+
+def stand(operator):
+    """The robot climbs no more, the chain runs on, so that its memory is seen to the end."""
+    try:
+        while True:
+            operator.look()
+    except (TimeIsUp, GaveUp, KeyboardInterrupt):
+        pass
+
+
+def climb(operator, screen, options):
     """(end, reason)"""
+    down = options.down
     try:
         screen.tell("arming: four claws grasp in the dock, then the dock lets go")
         operator.hang()
         screen.tell("climbing")
+        if options.soak:
+            up_and_down(operator, screen)
         end = operator.climb()
         if end == "top" and down:
             screen.tell("the top; back down")
@@ -150,7 +176,7 @@ def main():
         print(f"FAILED: {error}", file=sys.stderr)
         return 2
     overrides = [word for value in options.overrides for word in ("--set", value)]
-    robot = LiveRobot(Setup(os.environ["LCM_DEFAULT_URL"], overrides=overrides, robot=robot_arguments(options)))
+    robot = LiveRobot(Setup(os.environ["LCM_DEFAULT_URL"], overrides=overrides, robot=robot_arguments(options), notifies=options.soak))
     score_json = robot.log_of("score")
     score_json.unlink(missing_ok=True)
     beside = [subprocess.Popen([robot.setup.bin / "ladder_score", "--live", "--json", score_json], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)]
@@ -158,11 +184,17 @@ def main():
         beside.append(subprocess.Popen([REPOSITORY / "scripts/spy"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
     screen = Screen(robot, robot_faults.FaultPlayer(faults, robot))
     until_s = None if options.seconds is None else time.monotonic() + options.seconds
-    operator = ClimbOperator(robot, screen.look, until_s)
+    watch = soak.Soak(robot) if options.soak else None
+    operator = ClimbOperator(robot, screen.look if watch is None else lambda: (screen.look(), watch.look()), until_s,
+                             MAX_STOPS if watch is None else math.inf)
     try:
         robot.start_all()
-        end, reason = climb(operator, screen, options.down)
+        end, reason = climb(operator, screen, options)
+        if watch is not None and end in ("held", "stopped"):
+            screen.tell(f"{end}: {reason}; memory is watched to the end")
+            stand(operator)
         died = set(robot.dead())
+        watched = {} if watch is None else watch.figures()
     finally:
         unclean = robot.end()
         for process in beside:
@@ -171,11 +203,20 @@ def main():
     if screen.is_terminal:
         print("\r\033[K", end="")
     more = {"end": end, "reason": reason, "stops": operator.stops, "faults": screen.faults}
+    if watch is not None:
+        more["soak"] = {"ways": screen.ways, **watched}
     figures = write_figures(robot, score_json, more, options.json)
     advice(figures, operator.was_starved, screen.num_blind)
+    beyond = []
+    if watch is not None:
+        print(soak.table(watched))
+        beyond = soak.excesses(watched)
     bad = died | set(unclean)
     if bad:
         print(f"FAILED: ended badly: {', '.join(sorted(bad))}; logs are in {robot.setup.folder}/climb-*.log", file=sys.stderr)
+        return 1
+    if beyond:
+        print(f"FAILED: {'; '.join(beyond)}; samples are in {options.json}", file=sys.stderr)
         return 1
     reached = {"top": "the top is reached", "dock": "back in the dock, disarmed", "time": "the time is up", "asked": "asked to stop"}
     if end in reached:

@@ -5,6 +5,7 @@ It starts and kills processes, gives orders with ladder-command, acts upon the s
 heard last: the controller's state, each service's health, events, and the plant's truth, which the robot itself prints."""
 
 import collections
+import os
 import pathlib
 import queue
 import re
@@ -32,6 +33,7 @@ class Setup:
     name: str = "climb"  # of logs and sockets
     overrides: list = field(default_factory=list)  # "--set", "table.key=value"
     robot: list = field(default_factory=list)  # arguments of ladder_robot
+    notifies: bool = False  # services tell systemd's part at notify_socket_of() how they are
 
 
 @dataclass
@@ -89,6 +91,9 @@ class LiveRobot:
     def socket_of(self, what):
         return self.setup.folder / f"{self.setup.name}.{what}"
 
+    def notify_socket_of(self, service):
+        return self.socket_of(f"{service}.notify")
+
     def start_robot(self):
         command = [self.setup.bin / "ladder_robot", "--can", f"unix:{self.socket_of('can')}", "--lines", f"unix:{self.socket_of('lines')}",
                    "--url", self.setup.url, "--hand", "--print_period_s", "0.05", "--json", self.log_of("figures"), *self.setup.robot]
@@ -105,10 +110,11 @@ class LiveRobot:
         if service == "climb":
             command += ["--set", f"climb.can.interface=unix:{self.socket_of('can')}", "--set",
                         f"climb.lines.chip=unix:{self.socket_of('lines')}"]
+        environment = {**os.environ, **({"NOTIFY_SOCKET": str(self.notify_socket_of(service))} if self.setup.notifies else {})}
         self.killed.discard(service)
         again = service in self.processes
         with open(self.log_of(service), "a" if again else "w", encoding="utf-8") as log:
-            self.processes[service] = subprocess.Popen(command, cwd=REPOSITORY, stdout=log, stderr=log, start_new_session=True)
+            self.processes[service] = subprocess.Popen(command, cwd=REPOSITORY, env=environment, stdout=log, stderr=log, start_new_session=True)
 
     def start_all(self):
         self.start_robot()
