@@ -82,6 +82,23 @@ TEST_P(EachService, MissingRouteNamesTheFix) {
   EXPECT_THAT(child.output(), HasSubstr("ip route replace 239.255.76.67/32 dev lo src 127.0.0.1"));
 }
 
+// Where LCM can send but what it sends never comes back, the service ends with 3 and names what may
+// drop it. Here datagrams leave by another interface than the one at which the group was joined.
+TEST(LcmThatIsDeaf, IsNamed) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root for a network namespace";
+  const std::string network =
+      "ip link set lo up && ip link add eth1 type veth peer name far && "
+      "ip link set eth1 up && ip link set far up && "
+      "ip route add 239.255.76.67/32 dev lo src 127.0.0.1 && "
+      "ip route add 239.255.76.67/32 dev eth1 table 100 && "
+      "ip rule add ipproto udp dport 7667 lookup 100 && ";
+  ChildProcess child("unshare", {"-n", "sh", "-c",
+                                 network + "exec " + kBin +
+                                     "/gng_service --url 'udpm://239.255.76.67:7667?ttl=0'"});
+  EXPECT_EQ(child.wait(40s), 3) << child.output();  // LCM itself waits for 10 s
+  EXPECT_THAT(child.output(), HasSubstr("ladder-doctor --only route"));
+}
+
 // A socket buffer that would lose clouds is said at the start with the exact fix; the service runs
 // on.
 TEST_P(EachService, SmallSocketBufferIsSaid) {
