@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ladder/rectangular_bar.h"
+
 namespace ladder {
 
 BarDetector::BarDetector(const LadderParams& params)
@@ -12,7 +14,8 @@ BarDetector::BarDetector(const LadderParams& params)
       nodes_(params),
       search_(params),
       test_(params),
-      measurement_(params) {
+      measurement_(params),
+      profile_(params.max_bars) {
   found_.bars.reserve(params.max_bars);
   found_.rails.reserve(params.max_bars);
   used_.reserve(params.max_bars);
@@ -77,9 +80,30 @@ void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
 void BarDetector::push_back_together() {
   std::vector<MeasuredBar>& bars = found_.bars;
   if (bars.empty()) return;
+  const Eigen::Vector3d& up = found_.rails[0].axis.direction;
+  profile_.learn(bars, up);
+  const bool is_square = profile_.is_square();
+  if (is_square) {
+    for (MeasuredBar& bar : bars) bar.radius_m /= square_height(bar.depth.dot(up));
+  }
+  const double radius_m = median_radius_m();
+  for (MeasuredBar& bar : bars) {
+    // One of another kind keeps its own.
+    const bool is_alike =
+        std::abs(bar.radius_m - radius_m) <= params_.measure.radius_alike * radius_m;
+    if (is_alike) bar.radius_m = radius_m;
+    if (is_square) {
+      BarMeasurement::push_back_square(square_height(bar.depth.dot(up)), bar);
+    } else {
+      BarMeasurement::push_back(bar.radius_m, bar);
+    }
+  }
+}
+
+double BarDetector::median_radius_m() {
   radii_.clear();
   double weight = 0.0;
-  for (const MeasuredBar& bar : bars) {
+  for (const MeasuredBar& bar : found_.bars) {
     radii_.emplace_back(bar.radius_m, bar.weight);
     weight += bar.weight;
   }
@@ -88,14 +112,7 @@ void BarDetector::push_back_together() {
   for (double below = radii_[0].second; below < 0.5 * weight && median + 1 < radii_.size();) {
     below += radii_[++median].second;
   }
-  const double radius_m = radii_[median].first;
-  for (MeasuredBar& bar : bars) {
-    // One of another kind keeps its own.
-    const bool is_alike =
-        std::abs(bar.radius_m - radius_m) <= params_.measure.radius_alike * radius_m;
-    if (is_alike) bar.radius_m = radius_m;
-    BarMeasurement::push_back(bar.radius_m, bar);
-  }
+  return radii_[median].first;
 }
 
 void BarDetector::join_halves() {

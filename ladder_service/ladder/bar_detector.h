@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One frame of the default mode, before any memory: nodes -> bars -> ladder hypothesis -> measured
-// bars. Bars that belong to no ladder stay in the list, marked as such.
+// One frame of the default mode: nodes -> bars -> ladder hypothesis -> measured bars. Remembers
+// only how the heads sit and what profile the rungs have. Bars that belong to no ladder stay in the
+// list, marked as such.
 #pragma once
 
 #include <utility>
@@ -12,6 +13,7 @@
 #include "ladder/head_alignment.h"
 #include "ladder/ladder_test.h"
 #include "ladder/measured_bar.h"
+#include "ladder/rung_profile.h"
 
 namespace ladder {
 
@@ -25,13 +27,17 @@ class BarDetector {
  public:
   explicit BarDetector(const LadderParams& params);
   const Detections& detect(const NodeCloud& seen);
-  void reset() { alignment_.reset(); }
+  void reset() {
+    alignment_.reset();
+    profile_.reset();
+  }
   const HeadAlignment& alignment() const { return alignment_; }
 
  private:
   void measure_ladder(const NodeCloud& cloud, const BarSet& bars, const LadderHypothesis& ladder);
   void measure_others(const NodeCloud& cloud, const BarSet& bars);
   void push_back_together();
+  double median_radius_m();
   void join_halves();
   void drop_short_stubs();
   bool is_deep();
@@ -43,6 +49,7 @@ class BarDetector {
   BarSearch search_;
   LadderTest test_;
   BarMeasurement measurement_;
+  RungProfile profile_;
   Detections found_;
   std::vector<char> used_;
   std::vector<double> deep_;

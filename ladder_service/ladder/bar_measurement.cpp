@@ -8,6 +8,7 @@
 
 #include "ladder/backdrop.h"
 #include "ladder/chord_depth.h"
+#include "ladder/rectangular_bar.h"
 
 namespace ladder {
 
@@ -123,8 +124,9 @@ RailView BarMeasurement::rail_view(const BarFrame& frame, const LadderHypothesis
 
 MeasuredRail BarMeasurement::measure_rail(const BarFrame& frame, const Bar& rail,
                                           const RailView& rail_view) const {
-  MeasuredRail out{rail.axis, rail.from_m, rail.to_m, params_.measure.rail_half_width_m};
-  // Visible half width from the spread, away from where rungs are joined.
+  const MeasureParams& p = params_.measure;
+  MeasuredRail out{rail.axis, rail.from_m, rail.to_m, p.rail_half_width_m};
+  // Away from where rungs are joined, whose own points would pull it inwards.
   MomentSum sum;
   std::array<MomentSum, kNumHeads> heads;
   for (const int k : frame.bars.members_of(rail)) {
@@ -136,17 +138,38 @@ MeasuredRail BarMeasurement::measure_rail(const BarFrame& frame, const Bar& rail
     add_heads(frame, frame.nodes[k], heads);
   }
   out.axis.direction = rail_direction(rail, heads);
-  if (sum.weight < params_.measure.min_weight) return out;
+  if (sum.weight < p.min_weight) return out;
   const Eigen::Vector3d view = rail.axis.origin_m - rail.eye_m;
   Eigen::Vector3d side = unit(view.cross(rail.axis.direction), Eigen::Vector3d::UnitY());
   if (rail_view.across.squaredNorm() > 0.0) side = rail_view.across;
   const double range_m = std::sqrt(view.squaredNorm());
   const double along_view = side.dot(view) / range_m;
-  const double noise_m2 = along_view * along_view * rail_view.noise_m2;
-  const double variance_m2 = std::max(0.0, side.dot(sum.covariance() * side) - noise_m2);
+  // Noise is also what spreads the rail's own points farther than a rail is deep.
+  constexpr double kMostDepth_m2 = 0.0002;  // variance: 50 mm
+  const Eigen::Matrix3d covariance_m2 = sum.covariance();
+  const double spread_m2 = view.dot(covariance_m2 * view) / (range_m * range_m);
+  const double noise_m2 =
+      along_view * along_view * std::max(rail_view.noise_m2, spread_m2 - kMostDepth_m2);
+  const double variance_m2 = std::max(0.0, side.dot(covariance_m2 * side) - noise_m2);
   const double half_m = std::sqrt(3.0 * variance_m2) - 0.5 * range_m * frame.cloud.pixel_pitch_rad;
-  if (half_m > params_.measure.rail_width_switch_m) out.half_width_m = half_m;
+  if (half_m > p.rail_width_switch_m) {
+    out.half_width_m = half_m;
+  } else if (rail_view.across.squaredNorm() > 0.0) {
+    out.axis.origin_m = sum.mean();
+    out.axis.origin_m += from_seen_to_middle(frame, out, {rail.eye_m, side, covariance_m2});
+  }
   return out;
+}
+
+// A flat rail shows its front and one of its sides.
+Eigen::Vector3d BarMeasurement::from_seen_to_middle(const BarFrame& frame, const MeasuredRail& rail,
+                                                    const SeenRail& seen) const {
+  const Eigen::Vector3d ray = unit(-rail.axis.across(seen.eye_m), Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d across = ray.cross(rail.axis.direction);
+  const double variance_m2 = std::max(0.0, across.dot(seen.covariance_m2 * across));
+  const double half_seen_m =
+      std::sqrt(3.0 * variance_m2) + lost_m(frame, {rail.axis, rail.from_m, rail.to_m, seen.eye_m});
+  return beside_seen_m(rail.half_width_m, half_seen_m, ray.dot(seen.side)) * seen.side;
 }
 
 bool BarMeasurement::refit(const BarFrame& frame, const Bar& bar, const Between& rails,
@@ -202,15 +225,20 @@ void BarMeasurement::find_ends(const BarFrame& frame, const Bar& bar, const Betw
   }
 }
 
-// Points spread evenly over the visible height 2 h have the variance h^2 / 3. Before something, the
-// pixels on an edge show a mixture and are lost; before nothing, they show the bar alone and count.
-void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const {
+// Before something, the pixels on an edge show a mixture and are lost; before nothing, they show
+// the bar alone and count.
+double BarMeasurement::lost_m(const BarFrame& frame, const SeenStretch& bar) const {
   const MeasureParams& p = params_.measure;
-  const double range_m = std::sqrt((fit.axis.origin_m - bar.eye_m).squaredNorm());
-  const double variance_m2 = std::max(0.0, fit.height.dot(fit.spread_m2 * fit.height));
-  const double backed = backed_share(frame.cloud, {fit.axis, fit.from_m, fit.to_m, bar.eye_m});
+  const double backed = backed_share(frame.cloud, bar);
   const double lost_px = backed * p.edge_lost_px - (1.0 - backed) * p.edge_gained_px;
-  fit.out.lost_m = lost_px * range_m * frame.cloud.pixel_pitch_rad;
+  const double range_m = std::sqrt((bar.axis.origin_m - bar.eye_m).squaredNorm());
+  return lost_px * range_m * frame.cloud.pixel_pitch_rad;
+}
+
+// Points spread evenly over the visible height 2 h have the variance h^2 / 3.
+void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const {
+  const double variance_m2 = std::max(0.0, fit.height.dot(fit.spread_m2 * fit.height));
+  fit.out.lost_m = lost_m(frame, {fit.axis, fit.from_m, fit.to_m, bar.eye_m});
   fit.out.radius_m = std::max(0.0, std::sqrt(3.0 * variance_m2) + fit.out.lost_m);
   fit.out.depth = fit.depth;
   fit.out.end0_m = fit.axis.at(fit.from_m);
@@ -221,6 +249,13 @@ void BarMeasurement::push_back(double radius_m, MeasuredBar& bar) {
   constexpr double kLeastVisible = 0.3;  // of the radius
   const double visible_m = std::clamp(radius_m - bar.lost_m, kLeastVisible * radius_m, radius_m);
   const Eigen::Vector3d by_m = mean_chord_depth_m(radius_m, visible_m) * bar.depth;
+  bar.end0_m += by_m;
+  bar.end1_m += by_m;
+}
+
+// Front and side together are on average as far before the axis, by cosine and sine of the angle.
+void BarMeasurement::push_back_square(double height, MeasuredBar& bar) {
+  const Eigen::Vector3d by_m = bar.radius_m / height * bar.depth;
   bar.end0_m += by_m;
   bar.end1_m += by_m;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 
+#include "ladder/backdrop.h"
 #include "ladder/bar.h"
 #include "ladder/ladder_test.h"
 #include "ladder/measured_bar.h"
@@ -27,6 +28,13 @@ struct RailView {
   double noise_m2 = 0.0;
 };
 
+/// What is seen of a rail, from where, and the direction towards the right one.
+struct SeenRail {
+  Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d side = Eigen::Vector3d::UnitY();
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+};
+
 /// What one frame gave so far.
 struct BarFrame {
   const NodeCloud& cloud;
@@ -44,6 +52,8 @@ class BarMeasurement {
   MeasuredRail measure_rail(const BarFrame& frame, const Bar& rail, const RailView& view) const;
   /// From the visible front of a round bar to its axis.
   static void push_back(double radius_m, MeasuredBar& bar);
+  /// The same for a square one whose height is this many halves of its side.
+  static void push_back_square(double height, MeasuredBar& bar);
   /// How rails are seen between which these bars lie.
   RailView rail_view(const BarFrame& frame, const LadderHypothesis& ladder) const;
 
@@ -52,6 +62,9 @@ class BarMeasurement {
   bool refit(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
   Eigen::Vector3d rail_direction(const Bar& rail,
                                  const std::array<MomentSum, kNumHeads>& heads) const;
+  Eigen::Vector3d from_seen_to_middle(const BarFrame& frame, const MeasuredRail& rail,
+                                      const SeenRail& seen) const;
+  double lost_m(const BarFrame& frame, const SeenStretch& bar) const;
   void find_ends(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
   void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const;
   void find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const;

@@ -145,17 +145,19 @@ void HeadAlignment::learn_plane(const NodeCloud& cloud, const BarNodes& nodes, i
 
 void HeadAlignment::note_bar(const NodeCloud& cloud, const BarNodes& nodes, const BarSet& bars,
                              const Bar& bar) {
-  samples_.clear();
-  for (const int k : bars.members_of(bar)) {
-    for (int i = 0; i < nodes[k].num_moments; ++i) {
-      add_sample(cloud, cloud.moments[nodes[k].first_moment + i], Vector3d::Zero());
-    }
-  }
   const Vector3d& d = bar.axis.direction;
   const Vector3d ray = unit(bar.axis.origin_m - bar.eye_m, Vector3d::UnitX());
   const Vector3d depth = unit(ray - ray.dot(d) * d, Vector3d::UnitZ().cross(d));
-  note_misfit(depth);
-  note_misfit(d.cross(depth));
+  for (const Vector3d& across : {depth, Vector3d(d.cross(depth))}) {
+    samples_.clear();
+    for (const int k : bars.members_of(bar)) {
+      for (int i = 0; i < nodes[k].num_moments; ++i) {
+        add_sample(cloud, cloud.moments[nodes[k].first_moment + i], across);
+      }
+    }
+    for (Sample& sample : samples_) sample.variance_m2 *= sample.thickness;
+    note_misfit(across);
+  }
 }
 
 void HeadAlignment::add_sample(const NodeCloud& cloud, const HeadMoment& m,
@@ -261,24 +263,29 @@ void HeadAlignment::add_gravity(const NodeCloud& cloud, int plane, const Surface
   }
 }
 
+// What noise alone would set them apart is no misfit.
 void HeadAlignment::note_misfit(const Vector3d& normal) {
-  std::array<double, kNumHeads> count{}, sum_m{};
+  std::array<double, kNumHeads> count{}, sum_m{}, variance_m2{};
   for (const Sample& sample : samples_) {
     count[sample.head] += 1.0;
     sum_m[sample.head] += normal.dot(sample.point_m);
+    variance_m2[sample.head] += sample.variance_m2;
   }
-  double num_heads = 0.0, mean_m = 0.0;
+  double num_heads = 0.0, mean_m = 0.0, noise_m2 = 0.0;
   for (int head = 0; head < kNumHeads; ++head) {
     if (count[head] < params_.min_nodes) continue;
     num_heads += 1.0;
     mean_m += sum_m[head] / count[head];
+    noise_m2 += variance_m2[head] / (count[head] * count[head]);
   }
   if (num_heads < 2.0) return;
   mean_m /= num_heads;
+  noise_m2 /= num_heads;
   for (int head = 0; head < kNumHeads; ++head) {
     if (count[head] < params_.min_nodes || misfits_m_.size() == misfits_m_.capacity()) continue;
     const double off_m = sum_m[head] / count[head] - mean_m;
-    misfits_m_.push_back(std::abs(off_m) * std::sqrt(num_heads / (num_heads - 1.0)));
+    const double off_m2 = off_m * off_m * num_heads / (num_heads - 1.0);
+    misfits_m_.push_back(std::sqrt(std::max(0.0, off_m2 - noise_m2)));
   }
 }
 

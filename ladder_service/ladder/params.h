@@ -95,7 +95,7 @@ struct LadderTestParams {
 /// Axis, ends, radius and damage of one bar (default mode).
 struct MeasureParams {
   double joint_trim_m = 0.03;          ///< members this near to a rail are left out (recipe)
-  double rail_half_width_m = 0.0025;   ///< from the rail's axis to its inner face (recipe)
+  double rail_half_width_m = 0.005;    ///< of the front of a flat rail (own: 10 mm thick)
   double rail_width_switch_m = 0.010;  ///< an estimated half width is used above this (own)
   double prior_radius_m = 0.014;       ///< told in paper mode, which measures none (recipe)
   double edge_lost_px = 0.25;          ///< of a pixel at an edge before something: what mixes in

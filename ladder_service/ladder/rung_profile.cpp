@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ladder/rung_profile.h"
+
+#include "ladder/rectangular_bar.h"
+
+namespace ladder {
+namespace {
+
+constexpr double kKeep = 0.9;  // of older frames
+constexpr int kMinRungs = 3;
+// As much as rungs on one level differ: with less, nothing is said.
+constexpr double kLeast = 0.005;
+// The height grows by this share of what a square one's would: round ones have 0, square ones 1.
+constexpr double kMinSlope = 0.6;
+constexpr double kMaxSlope = 1.6;
+// So much of the differences must come from the angle.
+constexpr double kMinExplained = 0.6;
+
+}  // namespace
+
+void RungProfile::learn(const std::vector<MeasuredBar>& bars, const Eigen::Vector3d& up) {
+  seen_.clear();
+  double weight = 0.0, expected = 0.0, measured_m = 0.0;
+  for (const MeasuredBar& bar : bars) {
+    if (bar.is_stub() || !(bar.radius_m > 0.0)) continue;
+    const Seen seen{square_height(bar.depth.dot(up)), bar.radius_m, bar.weight};
+    seen_.push_back(seen);
+    weight += seen.weight;
+    expected += seen.weight * seen.expected;
+    measured_m += seen.weight * seen.measured_m;
+  }
+  if (static_cast<int>(seen_.size()) < kMinRungs) return;
+  expected /= weight;
+  measured_m /= weight;
+  xx_ *= kKeep;
+  xy_ *= kKeep;
+  yy_ *= kKeep;
+  for (const Seen& seen : seen_) {
+    const double x = seen.expected / expected - 1.0;
+    const double y = seen.measured_m / measured_m - 1.0;
+    xx_ += seen.weight / weight * x * x;
+    xy_ += seen.weight / weight * x * y;
+    yy_ += seen.weight / weight * y * y;
+  }
+}
+
+bool RungProfile::is_square() const {
+  return xy_ > kMinSlope * (xx_ + kLeast) && xy_ < kMaxSlope * xx_ &&
+         xy_ * xy_ > kMinExplained * xx_ * yy_;
+}
+
+}  // namespace ladder
