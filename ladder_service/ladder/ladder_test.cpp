@@ -74,16 +74,18 @@ bool LadderTest::joint(const BarSet& bars, const Bar& bar, Joint& out) const {
   // A bar that goes on beyond a rail belongs to something else.
   if (bar.from_m < at_left.t - params_.rung_overrun_m) return false;
   if (bar.to_m > at_right.t + params_.rung_overrun_m) return false;
-  out.reaches_left = bar.from_m < at_left.t + params_.reach_rail_m;
-  out.reaches_right = bar.to_m > at_right.t - params_.reach_rail_m;
-  out.height_m = at_left.u;
-  // A rail goes on where nobody looks, beside a rung that reaches only the other one.
-  const auto on_rail = [&](const Bar& rail, double u, bool reaches) {
-    const double overrun_m = reaches ? params_.rail_overrun_m : params_.rail_unseen_m;
-    return u >= rail.from_m - overrun_m && u <= rail.to_m + overrun_m;
+  // A rail goes on where nobody looks, beside a rung that reaches only the other one; what comes
+  // near to where it would be does not reach it.
+  const auto is_seen = [&](const Bar& rail, double u) {
+    return u >= rail.from_m - params_.rail_overrun_m && u <= rail.to_m + params_.rail_overrun_m;
   };
-  if (!on_rail(left, at_left.u, out.reaches_left)) return false;
-  if (!on_rail(right, at_right.u, out.reaches_right)) return false;
+  const auto may_go_on = [&](const Bar& rail, double u) {
+    return u >= rail.from_m - params_.rail_unseen_m && u <= rail.to_m + params_.rail_unseen_m;
+  };
+  if (!may_go_on(left, at_left.u) || !may_go_on(right, at_right.u)) return false;
+  out.reaches_left = is_seen(left, at_left.u) && bar.from_m < at_left.t + params_.reach_rail_m;
+  out.reaches_right = is_seen(right, at_right.u) && bar.to_m > at_right.t - params_.reach_rail_m;
+  out.height_m = at_left.u;
   return out.reaches_left || out.reaches_right;
 }
 

@@ -10,11 +10,12 @@ constexpr double kKeep = 0.9;  // of older frames
 constexpr int kMinRungs = 3;
 // As much as rungs on one level differ: with less, nothing is said.
 constexpr double kLeast = 0.005;
-// The height grows by this share of what a square one's would: round ones have 0, square ones 1.
-constexpr double kMinSlope = 0.6;
-constexpr double kMaxSlope = 1.6;
+// The height grows by this share of what a square one's would: square ones .77 to 1.33, round ones
+// less than .6, before nothing up to .8 but explained to .69 only (tuning seeds).
+constexpr double kMinSlope = 0.7;
+constexpr double kMaxSlope = 1.5;
 // So much of the differences must come from the angle.
-constexpr double kMinExplained = 0.6;
+constexpr double kMinExplained = 0.72;
 
 }  // namespace
 
