@@ -41,7 +41,6 @@ const BarSet& BarSearch::search(const BarNodes& nodes, const Eigen::Vector3d& bo
   in_rung_.assign(nodes.size(), 0);
   in_rail_.assign(nodes.size(), 0);
   grow_narrow(nodes);
-  widen_rails(nodes);
   drop_flanked(nodes, 0);
   const std::size_t num_narrow = set_.rungs.size();
   grow_wide(nodes);
@@ -86,25 +85,6 @@ void BarSearch::grow_narrow(const BarNodes& nodes) {
     }
     for (const int k : set_.members_of(bar)) taken[k] = 1;
     bars.push_back(bar);
-  }
-}
-
-// Far away, noise spreads a rail over more than the narrow height: what was found is a piece of it,
-// and leans.
-void BarSearch::widen_rails(const BarNodes& nodes) {
-  const BarParams& p = params_.bar;
-  for (Bar& rail : set_.rails) {
-    const std::size_t num_members = set_.members.size();
-    const Seed seed{rail.axis, 0.0, 0, true};
-    Bar wider;
-    const bool is_better = growth_.grow(nodes, seed, p.wide_half_height_m, set_, wider) &&
-                           is_long_enough(wider, true) &&
-                           wider.support() > p.wide_gain * rail.support();
-    if (is_better) {
-      rail = wider;
-    } else {
-      set_.members.resize(num_members);
-    }
   }
 }
 

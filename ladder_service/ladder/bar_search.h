@@ -22,7 +22,6 @@ class BarSearch {
 
  private:
   void grow_narrow(const BarNodes& nodes);
-  void widen_rails(const BarNodes& nodes);
   void grow_wide(const BarNodes& nodes);
   bool is_long_enough(const Bar& bar, bool upright) const;
   void drop_flanked(const BarNodes& nodes, std::size_t first);
