@@ -83,7 +83,8 @@ TEST_P(EachService, MissingRouteNamesTheFix) {
 }
 
 // Where LCM can send but what it sends never comes back, the service ends with 3 and names what may
-// drop it. Here datagrams leave by another interface than the one at which the group was joined.
+// drop it. Here datagrams leave by another interface than the one at which the group was joined
+// (17 is UDP: without netbase it has no name).
 TEST(LcmThatIsDeaf, IsNamed) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root for a network namespace";
   const std::string network =
@@ -91,7 +92,7 @@ TEST(LcmThatIsDeaf, IsNamed) {
       "ip link set eth1 up && ip link set far up && "
       "ip route add 239.255.76.67/32 dev lo src 127.0.0.1 && "
       "ip route add 239.255.76.67/32 dev eth1 table 100 && "
-      "ip rule add ipproto udp dport 7667 lookup 100 && ";
+      "ip rule add ipproto 17 dport 7667 lookup 100 && ";
   ChildProcess child("unshare", {"-n", "sh", "-c",
                                  network + "exec " + kBin +
                                      "/gng_service --url 'udpm://239.255.76.67:7667?ttl=0'"});
