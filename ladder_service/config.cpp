@@ -87,6 +87,7 @@ void read(ConfigTable table, ladder::MeasureParams& params) {
   table.read("edge_lost_px", params.edge_lost_px);
   table.read("edge_gained_px", params.edge_gained_px);
   table.read("radius_alike", params.radius_alike);
+  table.read("square_rungs", params.square_rungs);
   table.read("head_min_weight", params.head_min_weight);
   table.read("head_min_share", params.head_min_share);
   table.read("head_linearity", params.head_linearity);

@@ -81,7 +81,7 @@ void BarDetector::push_back_together() {
   std::vector<MeasuredBar>& bars = found_.bars;
   if (bars.empty()) return;
   const Eigen::Vector3d& up = found_.rails[0].axis.direction;
-  profile_.learn(bars, up);
+  if (params_.measure.square_rungs) profile_.learn(bars, up);
   const bool is_square = profile_.is_square();
   if (is_square) {
     for (MeasuredBar& bar : bars) bar.radius_m /= square_height(bar.depth.dot(up));
