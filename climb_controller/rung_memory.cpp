@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::int64_t kSuspicion_us = 1'000'000;  ///< longer ago, one sighting proves nothing
 
-constexpr double kAsWell =
-    0.9;  ///< of the longest stretch that was graspable, and nothing hides it
+/// So much of the longest stretch that was graspable, and nothing hides the rung.
+constexpr double kAsWell = 0.9;
 
 Eigen::Vector3d middle_m(const climb::RungView& rung) {
   return 0.5 * (rung.end0_m + rung.end1_m);
