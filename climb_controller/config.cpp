@@ -82,6 +82,7 @@ void read(ConfigTable table, climb::MotionParams& p) {
   table.read("cartesian_m_s2", p.cartesian_m_s2);
   table.read("pull_test_m", p.pull_test_m);
   table.read("pull_further_m", p.pull_further_m);
+  table.read("prove_further_m", p.prove_further_m);
   table.read("pull_test_max_slip_m", p.pull_test_max_slip_m);
   table.read("pull_test_min_N", p.pull_test_min_N);
   table.read("pull_test_max_N", p.pull_test_max_N);

@@ -19,7 +19,7 @@ static_assert(told(climb::ControllerState::kDisarming) == climb_state_t::STATE_D
 static_assert(told(climb::LimbState::kLoaded) == climb_state_t::LIMB_LOADED);
 static_assert(told(climb::LimbState::kSupportLost) == climb_state_t::LIMB_SUPPORT_LOST);
 static_assert(told(climb::Refusal::kNone) == climb_state_t::REFUSAL_NONE);
-static_assert(told(climb::Refusal::kSingular) == climb_state_t::REFUSAL_SINGULAR);
+static_assert(told(climb::Refusal::kRungMissing) == climb_state_t::REFUSAL_RUNG_MISSING);
 static_assert(told(climb::Burden::kBorne) == climb_state_t::BURDEN_BORNE);
 static_assert(told(climb::Burden::kTorque) == climb_state_t::BURDEN_TORQUE);
 static_assert(told(climb::CommandVerdict::kNotNow) == climb_state_t::VERDICT_NOT_NOW);

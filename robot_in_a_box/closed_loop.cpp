@@ -10,9 +10,8 @@ namespace {
 using climb::ControllerState;
 using climb::Order;
 
-constexpr double kGone_s = 1.0;     ///< until systemd has a service back
-constexpr double kArming_s = 15.0;  ///< of a new controller, in the dock that was brought
-constexpr double kBack_s = 60.0;    ///< until it must climb again, or stand with a reason
+constexpr double kGone_s = 1.0;   ///< until systemd has a service back
+constexpr double kBack_s = 60.0;  ///< until it must climb again, or stand with a reason
 constexpr double kLimbInTheAir_s = 60.0;
 constexpr double kOldLog_s = 3.0;
 constexpr int kThinking_cycles = 50;  ///< of the operator, between two orders
@@ -115,10 +114,8 @@ bool ClosedLoop::go_on(double within_s) {
 void ClosedLoop::give_order() {
   switch (box_.state()) {
     case ControllerState::kDisarmed:
-      if (brings_dock_ && !box_.plant().is_docked()) return box_.plant().set_docked(true);
       return box_.order(Order::kArm);
     case ControllerState::kHold:
-      brings_dock_ = false;
       if (box_.plant().is_docked()) return box_.plant().set_docked(false);
       if (box_.report().output.at_top) upwards_ = false;
       if (box_.report().output.at_dock && !upwards_) upwards_ = true;
@@ -167,7 +164,7 @@ void ClosedLoop::suffer(MishapRow& row) {
       break;
   }
   const std::int64_t since_us = box_.now_us();
-  const bool is_back = go_on(brings_dock_ ? kArming_s : kBack_s);
+  const bool is_back = go_on(kBack_s);
   if (is_back) row.back_s = 1e-6 * static_cast<double>(box_.now_us() - since_us);
   row.end = state_in_words();
   const bool stands_with_reason = !is_back && !climb_.reason().empty();
@@ -190,7 +187,7 @@ void ClosedLoop::lose_service(const std::string& service, MishapRow& row) {
 }
 
 // Row 20: the drives stop and hold by themselves; the next controller is disarmed and enables
-// nothing unasked.
+// nothing unasked. Armed where it hangs it finds out what its claws hold, and climbs on.
 void ClosedLoop::lose_controller(MishapRow& row) {
   box_.kill();
   const auto all_stop = [this] {
@@ -213,7 +210,6 @@ void ClosedLoop::lose_controller(MishapRow& row) {
   if (!is_disarmed() || num_drives_in(simulator::PowerState::kOperationEnabled) > 0) {
     miss("a new controller enables drives that nobody armed");
   }
-  brings_dock_ = true;
 }
 
 // Rows 23 and 24: ESTOP, and nothing moves when the button is let go.

@@ -104,7 +104,6 @@ class ClosedLoop {
   std::vector<OldMessage> old_log_;
   climb::OperatorCommand old_order_;
   bool upwards_ = true;
-  bool brings_dock_ = false;  ///< the controller is new: it arms in the dock
   ClosedLoopResult result_;
   std::function<void(const std::string&)> tell_;
 };

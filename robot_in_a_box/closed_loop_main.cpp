@@ -36,16 +36,13 @@ struct Arguments {
 
 /// A climb that ended in a hold with its reason is followed by another one on the next ladder.
 constexpr int kMaxMoreClimbs = 5;
-/// A new controller does not know what its claws hold: each such climb ends there.
-constexpr double kMostPauseBeforeTheEnd_s = 40.0;
 
 ClosedLoopParams params_of(const Arguments& arguments, Mishap mishap, std::uint64_t seed) {
   ClosedLoopParams params;
   params.mishap = mishap;
   params.num_times = arguments.num_times;
   params.seed = seed;
-  const bool ends_there = mishap == Mishap::kKillController;
-  params.most_pause_s = ends_there ? kMostPauseBeforeTheEnd_s : arguments.most_pause_s;
+  params.most_pause_s = arguments.most_pause_s;
   params.climb.climb.scene.seed = seed;
   params.climb.climb.scene.num_rungs = arguments.num_rungs;
   params.climb.climb.seed = seed;

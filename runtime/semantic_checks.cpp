@@ -74,11 +74,12 @@ bool are_cycles(const ladder_msgs::climb_state_t& m) {
 }  // namespace
 
 Reject check_values(const ladder_msgs::climb_state_t& m) {
-  const bool is_state =
-      m.session_id > 0 && within(m.state, 0, m.STATE_DISARMING) &&
-      within(m.reason, 0, m.REASON_PERCEPTION_SILENT) && within(m.refusal, 0, m.REFUSAL_SINGULAR) &&
-      within(m.burden, 0, m.BURDEN_TORQUE) && within(m.policy, 0, m.POLICY_NO_POWER_OFF_HOLD) &&
-      within(m.at_top, 0, 1) && within(m.body_shift, 0, 1);
+  const bool is_state = m.session_id > 0 && within(m.state, 0, m.STATE_DISARMING) &&
+                        within(m.reason, 0, m.REASON_PERCEPTION_SILENT) &&
+                        within(m.refusal, 0, m.REFUSAL_RUNG_MISSING) &&
+                        within(m.burden, 0, m.BURDEN_TORQUE) &&
+                        within(m.policy, 0, m.POLICY_NO_POWER_OFF_HOLD) && within(m.at_top, 0, 1) &&
+                        within(m.body_shift, 0, 1);
   const bool is_answer = within(m.order, 0, ladder_msgs::command_t::ORDER_DISARM) &&
                          m.order_seq >= -1 && within(m.order_verdict, 0, m.VERDICT_NOT_NOW);
   const bool are_limbs =

@@ -70,10 +70,13 @@ class Controller {
   void work_climbing(const ControllerInput& input);
   std::optional<Leg> next_to_grasp() const;
   void start_following(const ControllerInput& input);
-  PerLeg<bool> claws_round_rungs() const;
+  /// By where the jaws stand: the first targets are the measured ones, so none presses just now.
+  PerLeg<Hold> claws_round_rungs() const;
+  bool prove_grasps();
+  void refuse_if_late();
   bool begin_shift(const PerLeg<LegAngles>& told_rad, const PerLeg<LegAngles>& measured_rad);
   bool looks_again();
-  bool end_step();
+  bool end_step(const ControllerInput& input);
   bool ends_here(const RobotNow& now) const;
   void search(Leg leg, const ControllerInput& input);
   void watch_target(Leg leg, const ControllerInput& input);
@@ -121,6 +124,7 @@ class Controller {
   std::int64_t last_seq_ = -1;
   double in_state_s_ = 0.0;
   bool hangs_ = false;  ///< it hangs on its claws: four were loaded since arming, or three still
+  bool is_new_ = true;  ///< never armed: where the robot is, its claws tell
   bool upwards_ = true;
   Ending ending_ = Ending::kNone;
   int num_shifts_ = 0;         ///< before the step that is next

@@ -146,7 +146,7 @@ void Controller::report(ControllerOutput& output) const {
   output.reason = reason_;
   for (const Leg leg : kLegs) {
     output.limbs[leg] = limbs_[leg].state();
-    output.rung_ids[leg] = limbs_[leg].rung_id();
+    output.rung_ids[leg] = std::max(-1, limbs_[leg].rung_id());  // a felt one has no number
   }
   output.body_shift = shift_.active();
   output.at_top = plan_.at_top;

@@ -47,22 +47,48 @@ void Controller::work_arming(const ControllerInput& input) {
   }
   if (const std::optional<Leg> leg = moving_leg()) return search(*leg, input);
   for (const LimbCycle& limb : limbs_) {  // claws that held before press again first
-    if (limb.state() == LimbState::kLoaded && !limb.confirmation().holds()) return;
+    if (limb.state() == LimbState::kLoaded && !limb.confirmation().holds()) return refuse_if_late();
   }
   if (const std::optional<Leg> leg = next_to_grasp()) {
     LimbCycle& limb = limbs_[*leg];
     // What a claw is closed round is there: no rung to avoid.
     const int avoid_rung_id = limb.confirmation().witness().jaw ? -1 : limb.lost_rung_id();
-    plan_ = planner_.dock(*leg, avoid_rung_id, robot_now(input), ladder_of(input));
-    if (plan_.ready)
-      limb.begin(plan_.goal);
-    else if (in_state_s_ > params_.dock_timeout_s)
-      take(E::kArmingRefused);
+    const RobotNow now = robot_now(input);
+    plan_ = planner_.dock(*leg, avoid_rung_id, now, ladder_of(input));
+    if (!plan_.ready && hangs_) plan_ = planner_.beside(plan_, now, ladder_of(input));
+    if (!plan_.ready) return refuse_if_late();
+    limb.begin(plan_.goal);
     return;
   }
-  if (!hangs_) planner_.remember_dock(robot_now(input));
+  if (!prove_grasps()) return;
+  if (hangs_)
+    planner_.find_turn(robot_now(input));
+  else
+    planner_.remember_dock(robot_now(input));
   hangs_ = true;
   take(E::kArmed);
+}
+
+void Controller::refuse_if_late() {
+  if (in_state_s_ > params_.dock_timeout_s) take(E::kArmingRefused);
+}
+
+bool Controller::prove_grasps() {
+  // Claws that were closed when nobody watched are pulled at, one by one, while the three others
+  // hold. One that gives way stays closed: armed again, with the three others proven, it may grasp
+  // anew.
+  for (LimbCycle& limb : limbs_) {
+    if (!limb.needs_proof() || limb.is_doubtful()) continue;
+    if (!limb.prove()) refuse_if_late();
+    return false;
+  }
+  bool all_proven = true;
+  for (LimbCycle& limb : limbs_) {
+    if (!limb.needs_proof()) continue;
+    limb.fail();
+    all_proven = false;
+  }
+  return all_proven;
 }
 
 std::optional<Leg> Controller::next_to_grasp() const {
@@ -85,30 +111,39 @@ void Controller::start_following(const ControllerInput& input) {
     take(E::kArmingRefused);
     return;
   }
-  const PerLeg<bool> holds = claws_round_rungs();
-  const auto num_held = std::count(holds.begin(), holds.end(), true);
-  const auto num_closed = std::count_if(limbs_.begin(), limbs_.end(), [](const LimbCycle& limb) {
-    return limb.confirmation().witness().jaw;
-  });
+  const PerLeg<Hold> holds = claws_round_rungs();
+  const auto num_closed = kNumLegs - std::count(holds.begin(), holds.end(), Hold::kNone);
+  const auto num_confirmed = std::count(holds.begin(), holds.end(), Hold::kConfirmed);
   // On the ladder the others carry what is not held; in the dock none, or the stand does.
   if (hangs_ && num_closed > 0 && num_closed < 3) {
+    plan_ = PlannedStep();
+    plan_.burden = Burden::kNoContact;
     take(E::kArmingRefused);
     return;
   }
-  for (const Leg leg : kLegs) limbs_[leg].reset(limb_input(input, leg), holds[leg]);
+  // With three closed claws it hangs again, and found so by a new controller; else it is in the
+  // dock.
+  const bool may_hang = hangs_ || (is_new_ && params_.on_ladder);
+  hangs_ = num_confirmed >= 3 || (may_hang && num_closed >= 3);
+  is_new_ = false;
+  for (const Leg leg : kLegs) {
+    // Where three are confirmed, or a dock bears the body, the others grasp as they are.
+    const bool is_needed = hangs_ && num_confirmed < 3;
+    const bool is_kept = holds[leg] == Hold::kConfirmed || is_needed;
+    limbs_[leg].reset(limb_input(input, leg), is_kept ? holds[leg] : Hold::kNone);
+  }
   watch_.arm(input);
-  hangs_ = num_held >= 3 || (hangs_ && num_closed >= 3);  // on the ladder again, not in the dock
   torque_part_ = hangs_ ? 1.0 : 0.0;
   following_ = began_now_ = true;
 }
 
-PerLeg<bool> Controller::claws_round_rungs() const {
-  // By where the jaw stands: the first target is the measured one, so no jaw presses just now.
-  PerLeg<bool> holds{};
+PerLeg<Hold> Controller::claws_round_rungs() const {
+  PerLeg<Hold> holds{};
   for (const Leg leg : kLegs) {
     const LimbCycle& limb = limbs_[leg];
+    if (!limb.confirmation().witness().jaw) continue;
     const bool held = limb.state() == LimbState::kLoaded || limb.state() == LimbState::kSupportLost;
-    holds[leg] = held && limb.rung_id() >= 0 && limb.confirmation().witness().jaw;
+    holds[leg] = held && limb.has_rung() && !limb.needs_proof() ? Hold::kConfirmed : Hold::kFelt;
   }
   return holds;
 }
@@ -120,7 +155,7 @@ void Controller::work_climbing(const ControllerInput& input) {
   }
   if (shift_.active()) return;
   const RobotNow now = robot_now(input);
-  bool ends = stepping_ && !end_step();
+  bool ends = stepping_ && !end_step(input);
   ends = ends || ends_here(now);
   if (!ends) {
     const bool may_shift = num_shifts_ < params_.max_shifts;
@@ -179,7 +214,7 @@ bool Controller::begin_shift(const PerLeg<LegAngles>& told_rad,
   return false;
 }
 
-bool Controller::end_step() {
+bool Controller::end_step(const ControllerInput& input) {
   stepping_ = false;
   const bool made = !limbs_[plan_.leg].returned();
   if (made) {
@@ -189,6 +224,10 @@ bool Controller::end_step() {
   } else {  // no grasp up there: it is back on its old rung
     plan_.ready = false;
     plan_.refusal = withdrawn_ ? Refusal::kNotTrusted : Refusal::kAvoided;
+    // A rung that came off, or shows its damage by now, is seen so.
+    const PlannedStep once_more =
+        planner_.next(upwards_, false, robot_now(input), ladder_of(input));
+    if (once_more.refusal != Refusal::kNone) plan_.refusal = once_more.refusal;
   }
   return made;
 }

@@ -82,7 +82,8 @@ const char* name(Refusal refusal) {
                                                             "grasp out of reach",
                                                             "out of reach after the body shift",
                                                             "joint margin",
-                                                            "singular"};
+                                                            "singular",
+                                                            "rung missing"};
   const auto index = static_cast<std::size_t>(refusal);
   return index < kNames.size() ? kNames[index] : "?";
 }
@@ -125,6 +126,9 @@ GraspDecision GraspChoice::choose(const LadderView& ladder, const GraspQuery& qu
         is_any_within = is_any_within || is_within;
       }
     }
+    if (decision.refusal == Refusal::kTooFarAhead && lacks_rung(ladder, query)) {
+      decision.refusal = Refusal::kRungMissing;
+    }
   }
   decision.rungs = decisions_;
   return decision;
@@ -151,6 +155,17 @@ double GraspChoice::step_to_m(const RungView& rung, const GraspQuery& query) {
 bool GraspChoice::is_within_step(const RungView& rung, const GraspQuery& query) const {
   const double step = step_to_m(rung, query);
   return step >= params_.min_step_m && step <= params_.max_step_m;
+}
+
+bool GraspChoice::lacks_rung(const LadderView& ladder, const GraspQuery& query) const {
+  // Rungs are less than a step apart: where the next one is not, another one was.
+  bool goes_on = false;
+  for (const RungView& rung : ladder.rungs) {
+    const double step = step_to_m(rung, query);
+    if (is_within_step(rung, query)) return false;
+    goes_on = goes_on || (step > params_.max_step_m && step <= 2.0 * params_.max_step_m);
+  }
+  return goes_on;
 }
 
 Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,

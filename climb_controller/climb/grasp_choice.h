@@ -85,9 +85,10 @@ enum class Refusal : std::uint8_t {
   kGraspOutOfReach,
   kShiftOutOfReach,
   kJointMargin,
-  kSingular
+  kSingular,
+  kRungMissing  ///< none a step away, but one at twice that: a rung is missing between, or unseen
 };
-inline constexpr int kNumRefusals = static_cast<int>(Refusal::kSingular) + 1;
+inline constexpr int kNumRefusals = static_cast<int>(Refusal::kRungMissing) + 1;
 
 const char* name(Refusal refusal);
 
@@ -128,6 +129,7 @@ class GraspChoice {
   /// Along the ladder, from where the leg is, in the way it goes.
   static double step_to_m(const RungView& rung, const GraspQuery& query);
   bool is_within_step(const RungView& rung, const GraspQuery& query) const;
+  bool lacks_rung(const LadderView& ladder, const GraspQuery& query) const;
   Refusal judge_rung(const RungView& rung, const GraspQuery& query, GraspTarget& target) const;
   Refusal place(const LadderView& ladder, int rung_index, const GraspQuery& query,
                 GraspTarget& target) const;

@@ -8,6 +8,9 @@ namespace {
 
 using S = LimbState;
 
+/// No number of perception's; another for each leg.
+constexpr int kFeltRungId = -2;
+
 }  // namespace
 
 LimbCycle::LimbCycle(const RobotParams& robot, const MotionParams& motion, const LimbParams& params,
@@ -20,16 +23,21 @@ LimbCycle::LimbCycle(const RobotParams& robot, const MotionParams& motion, const
       leg_(leg),
       confirmation_(robot.claw, motion, confirmation) {}
 
-void LimbCycle::reset(const LimbInput& measured, bool holds) {
+void LimbCycle::reset(const LimbInput& measured, Hold hold) {
+  const bool holds = hold != Hold::kNone;
   input_ = measured;
   state_ = holds ? S::kLoaded : S::kPregrasp;
   target_ = {measured.angles_rad, LegAngles::Zero(), measured.claw.jaw_rad, holds ? 1.0 : 0.0};
   jaw_goal_rad_ = holds ? claw_.closed_rad : measured.claw.jaw_rad;  // nothing opens unasked
   moves_ = parks_ = wants_goal_ = returned_ = failed_ = is_jaw_forced_ = false;
-  if (!holds) {
-    held_rung_id_ = -1;
+  if (hold != Hold::kConfirmed) {
+    held_rung_id_ = hold == Hold::kFelt ? kFeltRungId - leg_ : -1;
     goal_ = {};
+    T_odom_body_ = measured.T_odom_body;
+    needs_proof_ = is_guess_ = hold == Hold::kFelt;
+    is_doubtful_ = false;
   }
+  proves_ = false;
   home_.reset();
   way_out_m_.reset();
   num_tries_ = 0;
@@ -59,6 +67,20 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   if (!is_open(input_)) state_ = confirmation_.witness().jaw ? S::kClosing : S::kRegrasp;
   enter(S::kPregrasp);
   return true;
+}
+
+bool LimbCycle::prove() {
+  if (state_ != S::kLoaded || moves_ || failed_) return false;
+  follow_body();
+  remember_home();
+  goal_ = *home_;
+  moves_ = proves_ = true;
+  returned_ = false;
+  way_out_m_.reset();
+  num_tries_ = 0;
+  num_places_ = 1;
+  spent_s_ = 0.0;
+  return take(LimbEvent::kProve);
 }
 
 bool LimbCycle::park() {
@@ -104,11 +126,7 @@ void LimbCycle::enter(LimbState from) {
     case S::kTransit:
       return move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
     case S::kPregrasp:
-      if (parks_) {
-        moves_ = false;
-        held_rung_id_ = -1;
-        return move_joints(target_.angles_rad, 0.0);
-      }
+      if (parks_ || from == S::kLoaded) return stand_free();
       jaw_goal_rad_ = claw_.open_rad;
       stage_ = way_out_m_ ? Stage::kOut : Stage::kOver;
       return move_foot(way_out_m_.value_or(aimed_m(goal_.pregrasp_m)), motion_.transit_m_s);
@@ -127,6 +145,8 @@ void LimbCycle::enter(LimbState from) {
       pulled_from_m_ = input_.T_odom_body * kinematics_.foot_m(leg_, input_.angles_rad);
       // What the closing jaw already draws on the rung counts: it adds to the pull.
       if (from != S::kClosing) torques_before_Nm_ = input_.torques_Nm;
+      // So does what a claw bears that was found loaded.
+      if (from == S::kLoaded) torques_before_Nm_.setZero();
       return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m), pull_m_s());
     case S::kLoading:
       if (from == S::kVerify) {
@@ -137,7 +157,7 @@ void LimbCycle::enter(LimbState from) {
       stay_home();
       return move_joints(input_.angles_rad, motion_.load_s);  // re-reference: never a step
     case S::kLoaded:
-      moves_ = parks_ = false;
+      moves_ = parks_ = proves_ = false;
       way_out_m_.reset();
       target_.weight = 1.0;
       target_.velocity_rad_s.setZero();
@@ -146,6 +166,7 @@ void LimbCycle::enter(LimbState from) {
       return;
     case S::kRegrasp:
       ++num_tries_;
+      failed_ = failed_ || needs_proof_;  // what held when nobody watched is not opened
       target_.weight = 0.0;
       jaw_goal_rad_ = claw_.open_rad;
       return;
@@ -177,7 +198,9 @@ void LimbCycle::work(const LimbInput& input) {
   const bool arrived = advance(input);
   switch (state_) {
     case S::kLoaded:
-      if (has_lost(input)) take(LimbEvent::kLost);
+      // What closes on nothing never held.
+      if (confirmation_.holds()) is_guess_ = false;
+      if (has_lost(input)) take(is_guess_ ? LimbEvent::kMissed : LimbEvent::kLost);
       return;
     case S::kUnloading:
       target_.weight = 1.0 - path_part();
@@ -322,14 +345,6 @@ void LimbCycle::finish_closing(const LimbInput& input) {
     confirmation_.conclude_missed();
     take(LimbEvent::kMissed);
   }
-}
-
-void LimbCycle::finish_pull(const LimbInput& input) {
-  last_witness_ = confirmation_.conclude({pull_slip_m(input), rung_force_N(input).norm()});
-  // On fewer than three others the body gives way too much to be pulled at, and what has closed on
-  // a rung is not opened again (invariant 3).
-  const bool is_needed = !input.others_hold && last_witness_.closed();
-  take(last_witness_.all() || is_needed ? LimbEvent::kDone : LimbEvent::kMissed);
 }
 
 void LimbCycle::keep_budget() {

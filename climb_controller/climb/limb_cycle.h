@@ -50,6 +50,13 @@ struct LimbTarget {
   double weight = 0.0;  ///< 0 = bears nothing .. 1 = its full share
 };
 
+/// What a claw has, when drives begin to follow.
+enum class Hold : std::uint8_t {
+  kNone,
+  kConfirmed,  ///< by this controller, and still closed
+  kFelt        ///< it is closed round something that can be a rung
+};
+
 struct LimbParams {
   double jaw_speed_rad_s = 5.0;    ///< of the jaw's target (own)
   double close_timeout_s = 2.0;    ///< without touch (contract)
@@ -72,8 +79,14 @@ class LimbCycle {
   LimbCycle(const RobotParams& robot, const MotionParams& motion, const LimbParams& params,
             const ConfirmationParams& confirmation, Leg leg);
 
-  /// Stands where it is measured, nothing planned. `holds`: as confirmed before, and still closed.
-  void reset(const LimbInput& measured, bool holds);
+  /// Stands where it is measured, nothing planned.
+  void reset(const LimbInput& measured, Hold hold);
+
+  /// Of a claw that was felt: it is pulled at where it is, beside what it bears. It stays closed.
+  bool prove();
+  bool needs_proof() const { return needs_proof_; }
+  bool is_doubtful() const { return is_doubtful_; }  ///< pulled at in vain
+  void fail() { failed_ = true; }                    ///< it stands there for good
 
   /// The next step, or from the dock the first grasp. False: not in this state.
   bool begin(const LimbGoal& goal);
@@ -106,7 +119,8 @@ class LimbCycle {
   const LimbTarget& target() const { return target_; }
   const GraspConfirmation& confirmation() const { return confirmation_; }
   GraspWitness last_witness() const { return last_witness_; }
-  int rung_id() const { return held_rung_id_; }       ///< of the last confirmed grasp
+  int rung_id() const { return held_rung_id_; }  ///< of the last grasp; below -1: felt only
+  bool has_rung() const { return held_rung_id_ != -1; }
   int lost_rung_id() const { return lost_rung_id_; }  ///< that gave way; -1 once another holds
   const LimbGoal& goal() const { return goal_; }
   const std::optional<LimbGoal>& home() const { return home_; }  ///< the old rung
@@ -134,6 +148,7 @@ class LimbCycle {
   void keep_budget();
   void remember_home();
   void stay_home();
+  void stand_free();
   bool waits_too_long(const LimbInput& input);
   bool must_stay_closed(const LimbInput& input) const;
 
@@ -188,6 +203,10 @@ class LimbCycle {
   bool returned_ = false;
   bool failed_ = false;
   bool is_jaw_forced_ = false;
+  bool needs_proof_ = false;  ///< felt, not yet pulled at
+  bool is_guess_ = false;     ///< ... and its switch has not yet said so
+  bool proves_ = false;       ///< is being pulled at
+  bool is_doubtful_ = false;
   GraspWitness last_witness_;
   LegAngles unpulled_rad_ = LegAngles::Zero();                     ///< measured before the pull
   Eigen::Isometry3d T_odom_body_ = Eigen::Isometry3d::Identity();  ///< that the points belong to

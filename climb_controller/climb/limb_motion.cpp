@@ -152,6 +152,14 @@ void LimbCycle::stand_at(const LegAngles& angles_rad) {
   move_joints(angles_rad, 0.0);
 }
 
+void LimbCycle::stand_free() {
+  moves_ = false;
+  held_rung_id_ = -1;
+  needs_proof_ = is_guess_ = false;
+  target_.weight = 0.0;
+  move_joints(target_.angles_rad, 0.0);
+}
+
 void LimbCycle::yield(const LimbInput& input) {
   // The closing jaw draws the claw to its seat on the rung; stiff joints would pull against it.
   stand_at(target_.angles_rad +
@@ -162,19 +170,32 @@ void LimbCycle::pull(const LimbInput& input, bool arrived) {
   const double force_N = rung_force_N(input).norm();
   const bool is_further = stage_ == Stage::kOut;
   const double enough_N = is_further ? motion_.pull_test_min_N : motion_.pull_test_max_N;
-  if (!arrived && (input.stop || !(force_N >= enough_N))) return;
   // A stretched leg is soft: what stays in the claw is pulled further, to the force asked for.
   const bool stays = confirmation_.witness().closed() &&
                      std::abs(pull_slip_m(input)) < motion_.pull_test_max_slip_m;
+  const bool is_enough = force_N >= enough_N || (is_further && !stays);
+  if (!arrived && (input.stop || !is_enough)) return;
   if (is_further || !stays || force_N >= motion_.pull_test_min_N) return finish_pull(input);
   stage_ = Stage::kOut;
   const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
-  move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_further_m), pull_m_s());
+  const double further_m = proves_ ? motion_.prove_further_m : motion_.pull_further_m;
+  move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, further_m), pull_m_s());
 }
 
 double LimbCycle::pull_slip_m(const LimbInput& input) const {
   const Eigen::Vector3d from_m = input.T_odom_body.inverse() * pulled_from_m_;
   return (kinematics_.foot_m(leg_, input.angles_rad) - from_m).z();
+}
+
+void LimbCycle::finish_pull(const LimbInput& input) {
+  last_witness_ = confirmation_.conclude({pull_slip_m(input), rung_force_N(input).norm()});
+  // On fewer than three others the body gives way too much to be pulled at, and what has closed on
+  // a rung is not opened again (invariant 3).
+  // Nor is one that was only to be proven.
+  const bool is_needed = proves_ || (!input.others_hold && last_witness_.closed());
+  if (last_witness_.all()) needs_proof_ = false;
+  is_doubtful_ = needs_proof_;
+  take(last_witness_.all() || is_needed ? LimbEvent::kDone : LimbEvent::kMissed);
 }
 
 void LimbCycle::load(const LimbInput& input, bool arrived) {

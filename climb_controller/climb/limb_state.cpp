@@ -41,6 +41,10 @@ constexpr LimbTransition kTransitions[] = {
     {S::kUnloading, E::kLost, S::kSupportLost},
 
     {S::kRetracting, E::kPark, S::kPregrasp},
+
+    // Found closed when armed: pulled at before it counts, or there was nothing in it.
+    {S::kLoaded, E::kProve, S::kVerify},
+    {S::kLoaded, E::kMissed, S::kPregrasp},
 };
 
 }  // namespace
@@ -54,7 +58,7 @@ const char* name(LimbState state) {
 
 const char* name(LimbEvent event) {
   constexpr const char* kNames[kNumLimbEvents] = {"lift",    "done", "abort", "missed",
-                                                  "give up", "lost", "park"};
+                                                  "give up", "lost", "prove", "park"};
   return kNames[static_cast<int>(event)];
 }
 

@@ -35,6 +35,7 @@ enum class LimbEvent : std::uint8_t {
   kMissed,  ///< no grasp there
   kGiveUp,  ///< tries are used up: back to the old rung
   kLost,    ///< a grasp that was confirmed is none
+  kProve,   ///< held when nobody watched: it is pulled at
   kPark     ///< in the dock: the claw is off and stays open
 };
 inline constexpr int kNumLimbEvents = static_cast<int>(LimbEvent::kPark) + 1;

@@ -113,6 +113,7 @@ std::string check(const MotionParams& p) {
       {in(p.cartesian_m_s2, 0.01, 100.0), "cartesian_m_s2 must be 0.01..100"},
       {in(p.pull_test_m, 0.0, 0.05), "pull_test_m must be 0..0.05"},
       {in(p.pull_further_m, 0.0, 0.05), "pull_further_m must be 0..0.05"},
+      {in(p.prove_further_m, 0.0, 0.05), "prove_further_m must be 0..0.05"},
       {in(p.pull_test_max_slip_m, 0.0, 0.05), "pull_test_max_slip_m must be 0..0.05"},
       {in(p.pull_test_min_N, 0.0, p.pull_test_max_N), "pull_test_min_N must be 0..pull_test_max_N"},
       {in(p.seat_m, 0.0, 0.05), "seat_m must be 0..0.05"},

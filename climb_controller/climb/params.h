@@ -87,6 +87,8 @@ struct MotionParams {
   double cartesian_m_s2 = 1.0;    ///< of the foot on a straight line (own)
   double pull_test_m = 0.010;     ///< back from the ladder (run)
   double pull_further_m = 0.004;  ///< where it falls short of the force: a stretched leg (own)
+  double prove_further_m =
+      0.026;  ///< ... one found loaded: its push on the ladder goes first (run)
   double pull_test_max_slip_m = 0.005;
   double pull_test_min_N = 40.0;   ///< the static share of a limb (run)
   double pull_test_max_N = 100.0;  ///< (run)

@@ -13,6 +13,7 @@ constexpr double kAhead_m = 0.10;  ///< less than half the distance of two rungs
 constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
+constexpr double kRungBeside_m = 0.40;   ///< a rung reaches so far to either side of a claw on it
 constexpr double kNextRung_m = 0.60;     ///< the next rung is at most so far above: two spacings
 constexpr double kInLine_m = 0.10;       ///< the middle of a rung off the line through another's
 constexpr double kInPlace_m = 0.008;     ///< a body so near to where a step wants it is not shifted
@@ -81,6 +82,32 @@ PlannedStep StepPlanner::dock(Leg leg, int avoid_rung_id, const RobotNow& now,
   if (above.ready) return above;
   query.upwards = false;
   return choose(query, now, ladder);
+}
+
+PlannedStep StepPlanner::beside(const PlannedStep& refused, const RobotNow& now,
+                                const LadderView& ladder) {
+  const Leg other = static_cast<Leg>(refused.leg ^ 1);
+  if (!is_confirmed(now.limbs[other])) return refused;
+  GraspQuery query = query_of(refused.leg, true, now);
+  const Eigen::Vector3d held_m = query.held[other].position_m;
+  for (const RungView& seen : ladder.rungs) {
+    if (seen.damaged && distance_m(seen, held_m) <= params_.grasp.same_rung_m) return refused;
+  }
+  const Eigen::Matrix3d R_odom_body = query.T_odom_body.linear();
+  const Eigen::Vector3d side_m = kRungBeside_m * R_odom_body.col(1);
+  RungView rung;
+  rung.id = now.stance.contacts[other].rung_id;
+  rung.trusted = true;
+  rung.confidence = 1.0;
+  rung.radius_m = params_.robot.claw.on_rung_radius_m;
+  rung.end0_m = held_m + side_m;
+  rung.end1_m = held_m - side_m;
+  const StretchView stretch{0, 0.0, 2.0 * kRungBeside_m};
+  query.from_m = held_m - kLookFromBelow_m * R_odom_body.col(0);
+  const std::span rungs(&rung, 1);
+  PlannedStep step = choose(query, now, {rungs, std::span(&stretch, 1), 0.0, true});
+  step.goal.radius_m = 0.0;  // felt, not measured
+  return step.ready ? step : refused;
 }
 
 Eigen::Vector3d StepPlanner::docked_from_m(Leg leg, const RobotNow& now) const {
@@ -217,6 +244,17 @@ bool StepPlanner::has_stepped(Leg leg, bool upwards, const RobotNow& now) const 
   const double lead_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]).x() -
                         kinematics_.foot_m(other, now.stance.angles_rad[other]).x();
   return (upwards ? lead_m : -lead_m) > kAhead_m;
+}
+
+void StepPlanner::find_turn(const RobotNow& now) {
+  // Upwards the right leg of a pair goes first, the rear pair before the front one.
+  const bool is_rear_apart = has_stepped(kRearRight, true, now);
+  const bool is_front_apart = has_stepped(kFrontRight, true, now);
+  last_upwards_ = true;
+  if (is_rear_apart)
+    last_leg_ = is_front_apart ? kFrontRight : kRearRight;
+  else
+    last_leg_ = is_front_apart ? kRearLeft : kFrontLeft;
 }
 
 Leg StepPlanner::next_leg_of(bool upwards) const {

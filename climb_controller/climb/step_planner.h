@@ -44,6 +44,10 @@ class StepPlanner {
   /// A free limb to the rung nearest before it; not to one that gave way under it (-1 = none did).
   PlannedStep dock(Leg leg, int avoid_rung_id, const RobotNow& now, const LadderView& ladder);
 
+  /// No rung is seen for a free limb on the ladder, as `refused` says: where the other of its pair
+  /// holds one, it goes on to this leg's side, unless it looks damaged.
+  PlannedStep beside(const PlannedStep& refused, const RobotNow& now, const LadderView& ladder);
+
   /// The next step of the crawl, with the body shift that it wants first (zero: it is in place).
   /// may_shift false: from where the body is.
   PlannedStep next(bool upwards, bool may_shift, const RobotNow& now, const LadderView& ladder);
@@ -69,6 +73,9 @@ class StepPlanner {
 
   /// From where a claw in the dock looks upwards for its first rung, odom.
   Eigen::Vector3d docked_from_m(Leg leg, const RobotNow& now) const;
+
+  /// Armed on the ladder: which step was the last, the feet tell.
+  void find_turn(const RobotNow& now);
 
   /// The step was made: the next leg is on. On the way back the last one goes first.
   void made(Leg leg, bool upwards) {

@@ -131,6 +131,26 @@ TEST(GraspChoice, RefusesForTheRightReason) {
   }
 }
 
+// No rung a step away, but one at twice that: a rung is missing. Not where it is seen but damaged,
+// nor where the ladder ends.
+TEST(GraspChoice, TellsAMissingRung) {
+  Scene missing;
+  missing.rungs.erase(missing.rungs.begin() + 3);
+  missing.stretches.erase(missing.stretches.begin() + 6);
+  EXPECT_EQ(missing.choose().refusal, Refusal::kRungMissing);
+  Scene damaged;
+  damaged.goal().damaged = true;
+  EXPECT_EQ(damaged.choose().refusal, Refusal::kDamaged);
+  Scene ended;
+  ended.rungs.resize(3);
+  ended.stretches.resize(3);
+  EXPECT_EQ(ended.choose().refusal, Refusal::kNotAhead);
+  Scene far_off = missing;
+  far_off.rungs.erase(far_off.rungs.begin() + 3, far_off.rungs.begin() + 5);
+  far_off.stretches.resize(4);
+  EXPECT_EQ(far_off.choose().refusal, Refusal::kTooFarAhead);
+}
+
 // Both a stretch just as wide as offered by the perception and no wider than the claw and its
 // margin may be used; its middle is then the grasp.
 TEST(GraspChoice, TakesAJustWideEnoughStretch) {

@@ -62,6 +62,17 @@ class LadderStand {
     broken_.clear();
     hidden_ = {};
   }
+  /// Odom begins where the body is now.
+  void begin_odom_here() {
+    const Eigen::Vector3d here_m = T_odom_body_.translation();
+    T_odom_body_.translation().setZero();
+    for (climb::RungView& rung : rungs) {
+      rung.end0_m -= here_m;
+      rung.end1_m -= here_m;
+    }
+    for (Eigen::Vector3d& held_m : held_m_) held_m -= here_m;
+    read();
+  }
   /// One more rung, numbered on; heights count in rung distances from where rung 0 would be.
   void add_rung_at(double place) {
     add_rung(static_cast<int>(rungs.size()) + 1, place);
@@ -75,8 +86,9 @@ class LadderStand {
   double body_height_m() const { return T_odom_body_.translation().z(); }
 
   climb::ControllerInput input;
-  double stiffness_Nm_rad = 800.0;  ///< of each joint
-  bool sags = false;                ///< without feed-forward, as when no dock is there
+  double stiffness_Nm_rad = 800.0;                              ///< of each joint
+  climb::PerLeg<double> stiffness_part = {1.0, 1.0, 1.0, 1.0};  ///< of a rung that gives way: less
+  bool sags = false;  ///< without feed-forward, as when no dock is there
   /// A jaw that moves no more, not even with its rung; NaN = it moves.
   climb::PerLeg<double> stuck_jaw_rad = {kMoves, kMoves, kMoves, kMoves};
   bool sees = true;
@@ -168,8 +180,8 @@ class LadderStand {
       }
       for (int joint = 0; joint < climb::kNumLegJoints; ++joint) {
         const double error_rad = drive_rad_[leg][joint] - measured_rad_[leg][joint];
-        input.axes[climb::axis_of(leg, joint)] = {measured_rad_[leg][joint],
-                                                  stiffness_Nm_rad * error_rad, true};
+        input.axes[climb::axis_of(leg, joint)] = {
+            measured_rad_[leg][joint], stiffness_part[leg] * stiffness_Nm_rad * error_rad, true};
       }
       input.axes[climb::axis_of(leg, climb::kJaw)] = {jaw_rad_[leg], jaw_torque_Nm_[leg], true};
       input.touch[leg] = held_rung_[leg] > 0;

@@ -146,7 +146,7 @@ TEST(SemanticChecks, ClimbState) {
   EXPECT_REFUSED(climb_state_t, m.session_id = 0);
   EXPECT_REFUSED(climb_state_t, m.state = m.STATE_DISARMING + 1);
   EXPECT_REFUSED(climb_state_t, m.reason = m.REASON_PERCEPTION_SILENT + 1);
-  EXPECT_REFUSED(climb_state_t, m.refusal = m.REFUSAL_SINGULAR + 1);
+  EXPECT_REFUSED(climb_state_t, m.refusal = m.REFUSAL_RUNG_MISSING + 1);
   EXPECT_REFUSED(climb_state_t, m.burden = m.BURDEN_TORQUE + 1);
   EXPECT_REFUSED(climb_state_t, m.policy = m.POLICY_NO_POWER_OFF_HOLD + 1);
   EXPECT_REFUSED(climb_state_t, m.order = ladder_msgs::command_t::ORDER_DISARM + 1);
