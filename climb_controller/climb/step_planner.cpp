@@ -14,7 +14,7 @@ constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
 constexpr double kRungBeside_m = 0.40;   ///< a rung reaches so far to either side of a claw on it
-constexpr double kNextRung_m = 0.60;     ///< the next rung is at most so far above: two spacings
+constexpr double kNextRung_m = 0.80;     ///< the next rung is at most so far above: two wide spacings
 constexpr double kInLine_m = 0.10;       ///< the middle of a rung off the line through another's
 constexpr double kInPlace_m = 0.008;     ///< a body so near to where a step wants it is not shifted
 constexpr double kMaxSideways_m = 0.02;  ///< of one shift, across the ladder and out of it

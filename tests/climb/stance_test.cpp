@@ -203,8 +203,8 @@ TEST_F(StanceTest, ARungNotTrustedIsNoTop) {
   EXPECT_EQ(output_.rung_ids[kFrontLeft], 9);
 }
 
-// A rung that is seen above only now and then is no top either, and what is far off the ladder's
-// line or higher than any next rung does not count.
+// A rung that is seen above only now and then is no top either, nor is one below a gap; what is far
+// off the ladder's line or higher than any next rung does not count.
 TEST_F(StanceTest, TheTopIsThatWhileItLooks) {
   ASSERT_TRUE(arm());
   order(Order::kClimb);
@@ -228,6 +228,7 @@ TEST_F(StanceTest, TheTopIsThatWhileItLooks) {
   };
   EXPECT_FALSE(look({0.0, 0.0, 0.0}, false));
   EXPECT_FALSE(look({0.0, 0.0, 0.0}, true));
+  EXPECT_FALSE(look({0.0, 0.0, 0.4}, false));
   EXPECT_TRUE(look({0.0, 0.0, 0.9}, false));
   EXPECT_TRUE(look({0.3, 0.0, 0.0}, false));
 }
