@@ -126,7 +126,7 @@ GraspDecision GraspChoice::choose(const LadderView& ladder, const GraspQuery& qu
         is_any_within = is_any_within || is_within;
       }
     }
-    if (decision.refusal == Refusal::kTooFarAhead && lacks_rung(ladder, query)) {
+    if (decision.refusal != Refusal::kNone && lacks_rung(ladder, query)) {
       decision.refusal = Refusal::kRungMissing;
     }
   }

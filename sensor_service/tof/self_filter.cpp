@@ -20,7 +20,9 @@ struct SeenCapsule {
   Vector3d along_m;
   double inverse_length2;
   double radius2_m2;
+  double nearest_m, farthest_m;  // its depths, a micrometre more
 
+  bool may_hold(double z_m) const { return z_m >= nearest_m && z_m <= farthest_m; }
   bool holds(const Vector3d& p_m) const {
     const Vector3d off_m = p_m - from_m;
     const double share = std::clamp(off_m.dot(along_m) * inverse_length2, 0.0, 1.0);
@@ -68,6 +70,7 @@ int drop(const RayTable& rays, const Window& window, const SeenCapsule& capsule,
       if (depth_mm == 0) continue;
       const double share = axial_share != nullptr ? static_cast<double>(axial_share[column]) : 1.0;
       const double z_m = 1e-3 * depth_mm * share;
+      if (!capsule.may_hold(z_m)) continue;  // most of what is behind a limb: the ladder, the wall
       const Vector3d p_m(static_cast<double>(rays.x()[column]) * z_m,
                          static_cast<double>(rays.y(row)) * z_m, z_m);
       if (!capsule.holds(p_m)) continue;
@@ -89,8 +92,13 @@ int drop_limbs(const DepthFrame& frame, const RayTable& rays, const Limbs& limbs
     const Vector3d to_m = R_head_body * (limb.to_m - frame.T_body_head.p_m);
     const Vector3d along_m = to_m - from_m;
     const double length2 = along_m.squaredNorm();
-    const SeenCapsule capsule = {from_m, along_m, length2 > 0.0 ? 1.0 / length2 : 0.0,
-                                 limb.radius_m * limb.radius_m};
+    const double reach_m = limb.radius_m + 1e-6;
+    const SeenCapsule capsule = {from_m,
+                                 along_m,
+                                 length2 > 0.0 ? 1.0 / length2 : 0.0,
+                                 limb.radius_m * limb.radius_m,
+                                 std::min(from_m.z(), to_m.z()) - reach_m,
+                                 std::max(from_m.z(), to_m.z()) + reach_m};
     const Window window = window_of(frame, from_m, to_m, limb.radius_m);
     num_dropped += drop(rays, window, capsule, frame.width_px, image);
   }

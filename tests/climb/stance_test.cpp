@@ -215,12 +215,13 @@ TEST_F(StanceTest, TheTopIsThatWhileItLooks) {
   above.trusted = false;
   const RungView next = above;
   const auto look = [&](const Eigen::Vector3d& off_m, bool flickers) {
+    above.end0_m = next.end0_m + off_m;
+    above.end1_m = next.end1_m + off_m;
     order(Order::kClimb);
     for (int i = 0; i < 3000 && output_.state != S::kHold; ++i) {
       const bool is_seen = !flickers || i % 50 == 0;
       above.end0_m.setConstant(climb_tests::kNan);
       if (is_seen) above.end0_m = next.end0_m + off_m;
-      above.end1_m = next.end1_m + off_m;
       cycle();
     }
     EXPECT_EQ(output_.state, S::kHold) << where();
@@ -229,6 +230,7 @@ TEST_F(StanceTest, TheTopIsThatWhileItLooks) {
   EXPECT_FALSE(look({0.0, 0.0, 0.0}, false));
   EXPECT_FALSE(look({0.0, 0.0, 0.0}, true));
   EXPECT_FALSE(look({0.0, 0.0, 0.4}, false));
+  EXPECT_EQ(output_.refusal, Refusal::kRungMissing) << where();
   EXPECT_TRUE(look({0.0, 0.0, 0.9}, false));
   EXPECT_TRUE(look({0.3, 0.0, 0.0}, false));
 }
