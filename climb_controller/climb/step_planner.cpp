@@ -13,12 +13,12 @@ constexpr double kAhead_m = 0.10;  ///< less than half the distance of two rungs
 constexpr double kUsualSpacing_m = 0.30;
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
-constexpr double kRungBeside_m = 0.40;   ///< a rung reaches so far to either side of a claw on it
-constexpr double kNextRung_m = 0.80;     ///< the next rung is at most so far above: two wide spacings
-constexpr double kInLine_m = 0.10;       ///< the middle of a rung off the line through another's
-constexpr double kInPlace_m = 0.008;     ///< a body so near to where a step wants it is not shifted
-constexpr double kMaxSideways_m = 0.02;  ///< of one shift, across the ladder and out of it
-constexpr double kStraight_rad = 0.02;   ///< a body so little askew is not turned
+constexpr double kRungBeside_m = 0.40;  ///< a rung reaches so far to either side of a claw on it
+constexpr double kNextRung_m = 0.80;  ///< the next rung is at most so far above: two wide spacings
+constexpr double kInLine_m = 0.10;    ///< the middle of a rung off the line through another's
+constexpr double kInPlace_m = 0.008;  ///< a body so near to where a step wants it is not shifted
+constexpr double kMaxSideways_m = 0.02;   ///< of one shift, across the ladder and out of it
+constexpr double kStraight_rad = 0.02;    ///< a body so little askew is not turned
 constexpr double kLeastSpread_m4 = 1e-6;  ///< of the feet, for a plane through them
 constexpr double kMaxTurn_rad = 0.10;     ///< of one shift, about each axis
 
