@@ -25,6 +25,28 @@ Eigen::Matrix3d small_rotation(const Eigen::Vector3d& angles_rad) {
   return q.normalized().toRotationMatrix();
 }
 
+/// One value per pixel: drawn at every kBlot_px-th, straight lines between.
+std::vector<float> smooth_error(const Pinhole& pinhole, double sigma, base::Rng rng) {
+  constexpr int kBlot_px = 16;
+  const int columns = pinhole.width_px / kBlot_px + 2;
+  const int rows = pinhole.height_px / kBlot_px + 2;
+  std::vector<float> knots(static_cast<std::size_t>(columns * rows));
+  for (float& knot : knots) knot = static_cast<float>(sigma * rng.gaussian());
+  std::vector<float> error;
+  error.reserve(static_cast<std::size_t>(pinhole.width_px * pinhole.height_px));
+  for (int y = 0; y < pinhole.height_px; ++y) {
+    for (int x = 0; x < pinhole.width_px; ++x) {
+      const float right = static_cast<float>(x % kBlot_px) / kBlot_px;
+      const float down = static_cast<float>(y % kBlot_px) / kBlot_px;
+      const float* knot = &knots[static_cast<std::size_t>(y / kBlot_px * columns + x / kBlot_px)];
+      const float above = knot[0] + right * (knot[1] - knot[0]);
+      const float below = knot[columns] + right * (knot[columns + 1] - knot[columns]);
+      error.push_back(above + down * (below - above));
+    }
+  }
+  return error;
+}
+
 bool is_edge(const Hit& a, const Hit& b) {
   if (a.primitive == b.primitive) return false;  // convex bodies have no steps of their own
   if (a.primitive < 0 || b.primitive < 0) return true;
@@ -49,6 +71,9 @@ HeadRenderer::HeadRenderer(const SensorParams& params, const HeadMount& mount, i
   T_body_head_true_.translation() += gaussian3(rng, params.extrinsic_sigma_m);
   T_body_head_true_.linear() =
       T_body_head_nominal_.linear() * small_rotation(gaussian3(rng, sigma_rad));
+  if (params.pixel_bias_m > 0.0) {
+    pixel_bias_m_ = smooth_error(pinhole(), params.pixel_bias_m, rng);
+  }
 }
 
 void HeadRenderer::render(const mjModel& model, const mjData& state,
@@ -70,7 +95,8 @@ void HeadRenderer::render(const mjModel& model, const mjData& state,
     const int x = static_cast<int>(i) % width;
     const int y = static_cast<int>(i) / width;
     const PixelLight pixel = on_edge_[i] != 0 ? light_of_edge(x, y) : light_of_ray(i);
-    const float range_m = sensor_.measure(pixel.light, pixel.mixed, rng);
+    float range_m = sensor_.measure(pixel.light, pixel.mixed, rng);
+    if (range_m > 0.0F && !pixel_bias_m_.empty()) range_m += pixel_bias_m_[i];
     const float depth_m = radial_ ? range_m : range_m * ray(i).z();
     image.depth_mm[i] = static_cast<std::int16_t>(depth_m * 1000.0F + 0.5F);
     image.confidence[i] = range_m > 0.0F ? SensorModel::confidence(pixel.light) : std::uint8_t{0};

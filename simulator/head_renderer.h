@@ -62,6 +62,7 @@ class HeadRenderer {
   Caster caster_;
   std::vector<Hit> hits_;
   std::vector<std::uint8_t> on_edge_;
+  std::vector<float> pixel_bias_m_;  ///< empty: none
 };
 
 }  // namespace simulator

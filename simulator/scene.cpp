@@ -53,7 +53,17 @@ std::string_view to_string(SceneKind kind) {
 }
 
 bool is_ladder(SceneKind kind) {
-  return kind < SceneKind::kEmptyRoom || kind == SceneKind::kLoose;
+  return kind < SceneKind::kEmptyRoom ||
+         (kind >= SceneKind::kLoose && kind < SceneKind::kNarrowShelf);
+}
+
+RungSection rung_section_from_string(std::string_view name) {
+  if (name == "round") return RungSection::kRound;
+  if (name == "oval") return RungSection::kOval;
+  if (name == "flat_top") return RungSection::kFlatTop;
+  if (name == "tread") return RungSection::kTread;
+  throw std::invalid_argument("unknown section of rungs \"" + std::string(name) +
+                              "\"; known are round, oval, flat_top, tread");
 }
 
 std::string check(const SceneParams& params) {
@@ -61,6 +71,12 @@ std::string check(const SceneParams& params) {
   if (!within(params.yaw_deg, -60.0, 60.0)) return "yaw_deg must be in [-60, 60]";
   if (params.rung_diameter_m && !within(*params.rung_diameter_m, 0.01, 0.12)) {
     return "rung_diameter_m must be in [0.01, 0.12]";
+  }
+  if (params.rail_diameter_m && !within(*params.rail_diameter_m, 0.01, 0.12)) {
+    return "rail_diameter_m must be in [0.01, 0.12]";
+  }
+  if (params.wall_reflectance && !within(*params.wall_reflectance, 0.01, 1.0)) {
+    return "wall_reflectance must be in [0.01, 1]";
   }
   if (!within(params.spacing_m, 0.15, 0.5)) return "spacing_m must be in [0.15, 0.5]";
   if (!within(params.clear_width_m, 0.2, 0.8)) return "clear_width_m must be in [0.2, 0.8]";
@@ -148,7 +164,9 @@ void SceneBuilder::floor() {
 }
 
 void SceneBuilder::wall(double face_m) {
-  box({face_m + 0.05, 0.0, 1.5}, {0.05, 2.5, 1.5}).reflectance = draw(0.4, 0.8);
+  const double drawn = draw(0.4, 0.8);
+  box({face_m + 0.05, 0.0, 1.5}, {0.05, 2.5, 1.5}).reflectance =
+      params().wall_reflectance.value_or(drawn);
 }
 
 int SceneBuilder::true_rung(const Rung& rung_in_stand) {

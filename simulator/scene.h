@@ -39,6 +39,15 @@ enum class SceneKind {
   kHandrail,
   kScaffold,
   kLoose,
+  kDoorway,
+  kFence,
+  kTwoLadders,
+  kSteps,
+  kNarrowShelf,
+  kChair,
+  kPipes,
+  kTowelRail,
+  kGate,
 };
 
 struct SceneName {
@@ -47,7 +56,7 @@ struct SceneName {
 };
 
 /// Every kind with the name users type; "normal" is accepted for "plain".
-inline constexpr std::array<SceneName, 23> kSceneNames{{
+inline constexpr std::array<SceneName, 32> kSceneNames{{
     {SceneKind::kPlain, "plain"},
     {SceneKind::kMissing, "missing"},
     {SceneKind::kBent, "bent"},
@@ -71,6 +80,15 @@ inline constexpr std::array<SceneName, 23> kSceneNames{{
     {SceneKind::kHandrail, "handrail"},
     {SceneKind::kScaffold, "scaffold"},
     {SceneKind::kLoose, "loose"},
+    {SceneKind::kDoorway, "doorway"},
+    {SceneKind::kFence, "fence"},
+    {SceneKind::kTwoLadders, "two_ladders"},
+    {SceneKind::kSteps, "steps"},
+    {SceneKind::kNarrowShelf, "narrow_shelf"},
+    {SceneKind::kChair, "chair"},
+    {SceneKind::kPipes, "pipes"},
+    {SceneKind::kTowelRail, "towel_rail"},
+    {SceneKind::kGate, "gate"},
 }};
 
 /// Throws std::invalid_argument that lists the known kinds.
@@ -78,6 +96,13 @@ SceneKind scene_kind_from_string(std::string_view name);
 std::string_view to_string(SceneKind kind);
 /// False for the kinds that only look like a ladder.
 bool is_ladder(SceneKind kind);
+
+/// Across a rung. Oval: half as wide again as high. Flat top: round below, level above. Tread: a
+/// level board, whatever the ladder leans.
+enum class RungSection { kRound, kOval, kFlatTop, kTread };
+
+/// Throws std::invalid_argument that lists "round", "oval", "flat_top" and "tread".
+RungSection rung_section_from_string(std::string_view name);
 
 struct SceneParams {
   SceneKind kind = SceneKind::kPlain;
@@ -89,6 +114,9 @@ struct SceneParams {
   double clear_width_m = 0.40;            ///< [0.2, 0.8] between the inner faces of the rails
   int num_rungs = 8;                      ///< [1, 16]
   std::optional<int> damaged_rung;  ///< of kMissing, kBent, kBroken, kLoose; none: from the seed
+  RungSection rung_section = RungSection::kRound;  ///< of sound rungs
+  std::optional<double> rail_diameter_m;           ///< [0.01, 0.12]; none: flat bars
+  std::optional<double> wall_reflectance;          ///< [0.01, 1]; none: from the seed
 };
 
 /// "" or the violated relation.

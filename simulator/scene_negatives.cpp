@@ -104,6 +104,63 @@ void add_scaffold(SceneBuilder& builder) {
   builder.wall(1.0);
 }
 
+/// Open shelf as narrow as a ladder: deep boards between side walls, no back.
+void add_narrow_shelf(SceneBuilder& builder) {
+  const double half_width = builder.draw(0.18, 0.26), spacing = builder.draw(0.26, 0.34);
+  for (const double side : {1.0, -1.0}) {
+    builder.box({0.0, side * (half_width + 0.01), 0.9}, {0.14, 0.01, 0.9});
+  }
+  for (int i = 0; i < 6; ++i) {
+    builder.box({0.0, 0.0, 0.08 + spacing * i}, {0.14, half_width, 0.011});
+  }
+  builder.wall(builder.draw(0.16, 0.4));
+}
+
+/// Ladder-back chair: four slats between two posts, a seat and legs, its back to the robot.
+void add_chair(SceneBuilder& builder) {
+  for (const double y : {0.21, -0.21}) {
+    builder.rod({0.0, y, 0.0}, {0.0, y, 1.1}, 0.018);
+    builder.rod({0.42, y, 0.0}, {0.42, y, 0.45}, 0.018);
+    builder.rod({0.0, y, 0.15}, {0.42, y, 0.15}, 0.010);
+  }
+  builder.box({0.21, 0.0, 0.45}, {0.22, 0.22, 0.012});
+  for (const double x : {0.0, 0.42}) add_bar(builder, {x, 0.21, 0.2}, {x, -0.21, 0.2}, 0.010);
+  for (int i = 0; i < 4; ++i) builder.box({0.0, 0.0, 0.58 + 0.15 * i}, {0.008, 0.20, 0.03});
+  builder.wall(builder.draw(0.7, 1.5));
+}
+
+/// Pipes along a wall, on upright channels 0.6 m apart.
+void add_pipes(SceneBuilder& builder) {
+  const double spacing = builder.draw(0.22, 0.35);
+  for (const double y : {0.3, -0.3}) builder.box({0.05, y, 1.2}, {0.02, 0.02, 1.2});
+  for (int i = 0; i < 6; ++i) {
+    const double z = 0.25 + spacing * i;
+    add_bar(builder, {0.0, 1.6, z}, {0.0, -1.6, z}, 0.017);
+  }
+  builder.wall(0.07);
+}
+
+/// Bathroom radiator: two uprights, tubes in groups with gaps for towels.
+void add_towel_rail(SceneBuilder& builder) {
+  for (const double y : {0.26, -0.26}) builder.rod({0.0, y, 0.2}, {0.0, y, 1.6}, 0.019);
+  for (const double group_m : {0.28, 0.70, 1.12}) {
+    for (int i = 0; i < 5; ++i) {
+      const double z = group_m + 0.05 * i;
+      add_bar(builder, {0.0, 0.26, z}, {0.0, -0.26, z}, 0.011);
+    }
+  }
+  builder.wall(0.09);
+}
+
+/// Field gate: five tubes nearer to each other below, between stiles 1.5 m apart, with a brace.
+void add_gate(SceneBuilder& builder) {
+  for (const double y : {0.75, -0.75}) builder.rod({0.0, y, 0.1}, {0.0, y, 1.2}, 0.022);
+  for (const double z : {0.2, 0.38, 0.58, 0.83, 1.15}) {
+    add_bar(builder, {0.0, 0.75, z}, {0.0, -0.75, z}, 0.019);
+  }
+  builder.rod({0.03, 0.75, 0.2}, {0.03, -0.75, 1.15}, 0.015);
+}
+
 }  // namespace
 
 void build_negative_scene(SceneBuilder& builder) {
@@ -126,6 +183,16 @@ void build_negative_scene(SceneBuilder& builder) {
       return add_handrail(builder);
     case SceneKind::kScaffold:
       return add_scaffold(builder);
+    case SceneKind::kNarrowShelf:
+      return add_narrow_shelf(builder);
+    case SceneKind::kChair:
+      return add_chair(builder);
+    case SceneKind::kPipes:
+      return add_pipes(builder);
+    case SceneKind::kTowelRail:
+      return add_towel_rail(builder);
+    case SceneKind::kGate:
+      return add_gate(builder);
     default:
       break;
   }

@@ -49,10 +49,11 @@ std::string check(const SensorParams& params) {
   if (params.wrap_range_m != 0.0 && !(params.wrap_range_m > params.range_min_m)) {
     return "wrap_range_m must be 0 or above range_min_m";
   }
-  for (const double share : {params.noise_share, params.edge_dropout, params.random_dropout,
-                             params.noise_floor_m, params.wiggle_m, params.extrinsic_sigma_m}) {
+  for (const double share :
+       {params.noise_share, params.edge_dropout, params.random_dropout, params.noise_floor_m,
+        params.wiggle_m, params.pixel_bias_m, params.extrinsic_sigma_m}) {
     if (!(share >= 0.0 && share <= 1.0)) {
-      return "noise_share, noise_floor_m, wiggle_m, edge_dropout, random_dropout and "
+      return "noise_share, noise_floor_m, wiggle_m, pixel_bias_m, edge_dropout, random_dropout and "
              "extrinsic_sigma_m must be in [0, 1]";
     }
   }

@@ -22,6 +22,8 @@ struct SensorParams {
   double noise_share = 0.01;         ///< standard deviation / range on a mid-grey frontal surface
   double noise_floor_m = 0.002;      ///< least standard deviation
   double wiggle_m = 0.003;           ///< amplitude of the periodic phase error
+  double pixel_bias_m = 0.0;         ///< standard deviation of an error that stays: blots over the
+                                     ///< image, drawn per head and seed
   double edge_dropout = 0.4;         ///< probability that a pixel on a depth edge returns nothing
   double random_dropout = 0.03;      ///< the same for every pixel
   double extrinsic_sigma_m = 0.002;  ///< mounting error per axis, fixed per head and seed

@@ -30,7 +30,8 @@ class SimulationOptions {
   std::string layout_ = "heads_still";
   std::string depth_ = "radial";
   std::vector<int> dead_heads_;
-  std::optional<double> diameter_m_;
+  std::optional<double> diameter_m_, rail_diameter_m_, wall_reflectance_;
+  std::string section_ = "round";
   std::optional<double> removal_s_;
   int removed_rung_ = 2;
 };

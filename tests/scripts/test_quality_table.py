@@ -57,6 +57,13 @@ class Scenes(unittest.TestCase):
         self.assertEqual(len({run.words[-1] for run in runs}), len(runs))
         self.assertEqual({run.words[run.words.index("--dead_heads") + 1] for run in runs}, {0, 1, 2, 3})
 
+    def test_what_is_held_out_is_not_in_the_grid(self):
+        self.assertFalse(set(quality_scenes.HELD_OUT) & set(quality_scenes.KINDS))
+        places = {run.words[-4:-2] for run in quality_scenes.runs_of(quality_scenes.KINDS, 1, 1, 30)}
+        held_out = {run.words[-4:-2] for run in quality_scenes.runs_of(quality_scenes.HELD_OUT, 1, 1, 30)}
+        self.assertEqual(len(held_out), len(quality_scenes.HELD_OUT_PLACES))
+        self.assertFalse(places & held_out)
+
     def test_every_nth_place_keeps_its_seed(self):
         everything = quality_scenes.runs_of(["wall"], 1, 1, 30)
         self.assertEqual(quality_scenes.runs_of(["wall"], 1, 1, 30, every=4), everything[::4])

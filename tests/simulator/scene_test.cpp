@@ -66,6 +66,13 @@ TEST(SceneParams, CheckNamesTheField) {
   params.rung_diameter_m = 0.0;
   EXPECT_THAT(check(params), HasSubstr("rung_diameter_m"));
   params = {};
+  params.rail_diameter_m = 0.5;
+  EXPECT_THAT(check(params), HasSubstr("rail_diameter_m"));
+  params = {};
+  params.wall_reflectance = 0.0;
+  EXPECT_THAT(check(params), HasSubstr("wall_reflectance"));
+  EXPECT_THROW(rung_section_from_string("triangular"), std::invalid_argument);
+  params = {};
   params.num_rungs = 0;
   EXPECT_THAT(check(params), HasSubstr("num_rungs"));
 }
@@ -150,6 +157,74 @@ TEST(Scene, SpacingAndWidthAreKept) {
       EXPECT_NEAR((scene.rungs[i + 1].end0_m - scene.rungs[i].end0_m).norm(), 0.28, 1e-9);
       EXPECT_NEAR((scene.rungs[i].end1_m - scene.rungs[i].end0_m).norm(), 0.5, 1e-9);
     }
+  }
+}
+
+// Treads are level boards whose noses lie spacing apart along the leaning rails, between them.
+TEST(Scene, TreadsAreLevel) {
+  SceneParams params;
+  params.kind = SceneKind::kIncline60;
+  params.rung_section = RungSection::kTread;
+  params.yaw_deg = 15.0;
+  const Scene scene = make_scene(params);
+  ASSERT_EQ(scene.rungs.size(), 8U);
+  const Eigen::Vector3d along = scene.rails[0].end1_m - scene.rails[0].end0_m;
+  const Eigen::Vector3d step = scene.rungs[1].end0_m - scene.rungs[0].end0_m;
+  EXPECT_NEAR(step.norm(), params.spacing_m, 1e-9);
+  EXPECT_NEAR(step.normalized().dot(along.normalized()), 1.0, 1e-9);
+  int num_boards = 0;
+  for (const Solid& solid : scene.solids) {
+    if (solid.part != Part::kRung) continue;
+    ++num_boards;
+    EXPECT_EQ(solid.shape, Shape::kBox);
+    EXPECT_NEAR(solid.R_world_solid(2, 2), 1.0, 1e-12);
+    const Rung& rung = scene.rungs[static_cast<std::size_t>(solid.part_index)];
+    const Eigen::Vector3d nose = 0.5 * (rung.end0_m + rung.end1_m);
+    EXPECT_NEAR((solid.center_m - nose).norm(), solid.half_size_m.x() - rung.radius_m, 1e-9);
+    EXPECT_LT(nose.norm(), solid.center_m.norm());
+  }
+  EXPECT_EQ(num_boards, 8);
+}
+
+/// How far the solids of a rung reach from its axis: to the robot and up.
+std::pair<double, double> reach_m(RungSection section) {
+  SceneParams params;
+  params.rung_diameter_m = 0.03;
+  params.rung_section = section;
+  const Scene scene = make_scene(params);
+  double ahead_m = 0.0, up_m = 0.0;
+  for (const Solid& solid : scene.solids) {
+    if (solid.part != Part::kRung || solid.part_index != 0) continue;
+    const Eigen::Vector3d off =
+        solid.center_m - 0.5 * (scene.rungs[0].end0_m + scene.rungs[0].end1_m);
+    ahead_m = std::max(ahead_m, std::abs(off.x()) + solid.half_size_m.x());
+    const bool is_box = solid.shape == Shape::kBox;
+    up_m = std::max(up_m, off.z() + (is_box ? solid.half_size_m.z() : solid.half_size_m.x()));
+  }
+  return {ahead_m, up_m};
+}
+
+// Sections are as high as the diameter says; only the oval is wider.
+TEST(Scene, SectionsHaveTheirSize) {
+  for (const auto& [section, ahead_m] :
+       {std::pair{RungSection::kRound, 0.015}, std::pair{RungSection::kOval, 0.0225},
+        std::pair{RungSection::kFlatTop, 0.015}}) {
+    EXPECT_NEAR(reach_m(section).first, ahead_m, 1e-9);
+    EXPECT_NEAR(reach_m(section).second, 0.015, 1e-9);
+  }
+}
+
+// Round rails leave the clear width free, and the truth's rungs end at their inner faces.
+TEST(Scene, RoundRailsKeepTheClearWidth) {
+  SceneParams params;
+  params.rail_diameter_m = 0.048;
+  const Scene scene = make_scene(params);
+  ASSERT_EQ(scene.rails.size(), 2U);
+  EXPECT_NEAR((scene.rails[0].end0_m - scene.rails[1].end0_m).norm(), 0.448, 1e-9);
+  EXPECT_NEAR((scene.rungs[0].end1_m - scene.rungs[0].end0_m).norm(), 0.4, 1e-9);
+  for (const Solid& solid : scene.solids) {
+    if (solid.part != Part::kRail) continue;
+    EXPECT_EQ(solid.shape, Shape::kCylinder);
   }
 }
 
