@@ -26,6 +26,9 @@ const char* channel_of(const ladder_msgs::imu_t&) {
 const char* channel_of(const ladder_msgs::pose_t&) {
   return channels::kPose.name;
 }
+const char* channel_of(const ladder_msgs::truth_t&) {
+  return channels::kTruth.name;
+}
 
 class SceneRun {
  public:
@@ -58,13 +61,23 @@ class SceneRun {
  private:
   static constexpr std::uint64_t kOdometryStream = 0x6f646f6d;
 
-  void tell(const ladder_msgs::truth_t& truth) { scorer_.add(truth); }
+  void tell(const ladder_msgs::truth_t& truth) {
+    encode(truth);
+    scorer_.add(truth);
+  }
 
   template <class Message>
   void tell(const Message& message) {
+    encode(message);
+    chain_.feed(channel_of(message), bytes_.data(), bytes_.size(), message.utime);
+  }
+
+  template <class Message>
+  void encode(const Message& message) {
     bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
     message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
-    chain_.feed(channel_of(message), bytes_.data(), bytes_.size(), message.utime);
+    now_us_ = message.utime;
+    if (params_.listener) params_.listener(channel_of(message), bytes_, now_us_);
   }
 
   /// Every pose up to this time.
@@ -90,8 +103,10 @@ class SceneRun {
     }
   }
 
-  void take(std::string_view channel, std::span<const std::uint8_t> bytes) {
-    if (channel == channels::kTopology.name) return add<ladder_msgs::topology_t>(bytes);
+  void take(const char* channel, std::span<const std::uint8_t> bytes) {
+    if (params_.listener) params_.listener(channel, bytes, now_us_);
+    if (channel == std::string_view(channels::kTopology.name))
+      return add<ladder_msgs::topology_t>(bytes);
     add<ladder_msgs::ladder_t>(bytes);
     const double busy_ms = chain_.busy_ms("gng") + chain_.busy_ms("ladder");
     if (is_warm_) scorer_.computed(busy_ms - busy_ms_);
@@ -114,6 +129,7 @@ class SceneRun {
   base::Rng rng_;
   ladder_msgs::pose_t pose_{};
   std::vector<std::uint8_t> bytes_;
+  std::int64_t now_us_ = 0;
   double busy_ms_ = 0.0;
   bool is_warm_ = false;
 };

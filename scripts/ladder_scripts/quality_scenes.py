@@ -95,7 +95,7 @@ class Run:
     frames: int
 
     def command(self):
-        return " ".join(map(str, self.words))
+        return " ".join(map(str, (*self.words, "--frames", self.frames)))
 
 
 def runs_of(kinds, first_seed, repeats, frames, places=None, every=1):

@@ -55,6 +55,31 @@ def summary(runs):
     return result
 
 
+def badness(run):
+    """For comparing runs: what is dangerous first, then what is missed, then how far off the worst rung is."""
+    missed = run.get("rungs_true", 0) - round((run.get("recall") or 0.0) * run.get("rungs_true", 0))
+    return (run.get("false_ladders", 0), run.get("unsafe_grasps", 0), run.get("rungs_wrong", 0), missed,
+            run.get("identity_switches", 0), max(run.get("axis_errors_mm", []), default=0.0))
+
+
+def went_wrong(run):
+    return any(badness(run)[:-1])
+
+
+def worst_runs(runs):
+    """The worst run of each kind, in the order of the kinds."""
+    worst = {}
+    for run in runs:
+        if run["has_truth"] and (run["kind"] not in worst or badness(run) > badness(worst[run["kind"]])):
+            worst[run["kind"]] = run
+    return list(worst.values())
+
+
+def in_words(run):
+    return (f"recall {text(run['recall'])} of {run['rungs_true']}, wrong {run['rungs_wrong']}, false {run['false_ladders']}, unsafe "
+            f"{run['unsafe_grasps']}, ids {run['identity_switches']}, candidates {run['rungs_candidates']}")
+
+
 def text(value):
     if value is None:
         return "-"
