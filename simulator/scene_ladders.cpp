@@ -201,7 +201,7 @@ void add_doorway(SceneBuilder& builder, double wall_m) {
 void add_fence(SceneBuilder& builder, double wall_m) {
   constexpr int kNumPickets = 21;
   for (int i = 0; i < kNumPickets; ++i) {
-    const double y = 0.13 * (i - kNumPickets / 2);
+    const double y = 0.13 * i - 1.3;
     builder.box({wall_m + 0.03, y, 0.9}, {0.01, 0.04, 0.9});
   }
   for (const double z : {0.35, 0.95, 1.55}) builder.box({wall_m + 0.06, 0.0, z}, {0.02, 1.4, 0.04});
