@@ -4,10 +4,11 @@ that does not help. It gives orders only through ladder-command; nothing here mo
 
 import time
 
-from ladder_scripts.live_robot import LATCHED
+from ladder_scripts.live_robot import LATCHED, PERCEPTION
 
 MAX_STOPS = 6  # latched ones, then enough
 MAX_HELD = 3  # orders to go on from a HOLD that is not the top
+MAX_RESETS = 4
 PATIENCE_S = 60.0  # without perception, without a controller
 SETTLING_S = 3.0
 LOOK_S = 0.05
@@ -142,21 +143,29 @@ class ClimbOperator:
         if len(self.stops) > self.max_stops:
             raise GaveUp(f"{self.robot.state_name}: {reason}")
 
+    def _reset(self):
+        """Again while the cause has not passed."""
+        for _ in range(MAX_RESETS):
+            if self.robot.state_name not in LATCHED or self.give("reset", timeout_s=20):
+                return
+            self.pause(SETTLING_S)
+        raise GaveUp(f"reset is refused: {self.robot.state_name}, {self.robot.reason}; the controller's words are in {self.robot.log_of('climb')}, "
+                     "what each reason asks for in docs/OPERATION.md")
+
     def recover(self):
-        """After a stop: its cause gone, reset, arm. A controller that was started anew does not know which claws hold: the dock first."""
+        """After a stop: its cause gone, reset, arm. Where the controller was started anew, odom begins where the robot hangs: perception too."""
         if not self.wait(lambda: time.monotonic() - self.robot.state_s < 0.5, PATIENCE_S):
             raise GaveUp("no controller is heard")
         self._note_stop()
         self.pause(1.0)
         is_new = self.robot.state["session_id"] != self.session
         if is_new:
-            self.robot.hand("dock")
+            for service in PERCEPTION:
+                self.robot.kill(service)
+                self.robot.start(service)
             if not self.wait(lambda: self.robot.state_name in ("DISARMED", *LATCHED), PATIENCE_S):
                 raise GaveUp(f"the new controller is {self.robot.state_name}: {self.robot.reason}")
+            self.pause(SETTLING_S)  # it sees the ladder
         self.wait(lambda: self.robot.state["estop_active"] == 0, PATIENCE_S)
-        if self.robot.state_name in LATCHED and not self.give("reset", timeout_s=20):
-            raise GaveUp(f"reset is refused: {self.robot.state_name}, {self.robot.reason}")
+        self._reset()
         self._arm()
-        if is_new:
-            self.robot.hand("undock")
-            self.pause(SETTLING_S)

@@ -19,6 +19,7 @@ from ladder_scripts.lcm_udp import Listener
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = {"sensor": "sensor_service", "gng": "gng_service", "ladder": "ladder_service", "climb": "climb_controller"}
+PERCEPTION = ("sensor", "gng", "ladder")
 CHANNELS = ("LADDER_CLIMB", "LADDER_HEALTH", "LADDER_EVENT")
 TRUTH = re.compile(r"\s*([\d.]+) s  truth  enabled +(\d+)(?:  stopped (\d+))?  claws((?: \S+)+)  z (-?[\d.]+) m(.*)")
 RUNG = re.compile(r"\s*([\d.]+) s  rung (\d+) climbed")

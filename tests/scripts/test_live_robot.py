@@ -4,13 +4,14 @@
 import pathlib
 import sys
 import time
+import types
 import unittest
 
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
-from ladder_scripts import lcm_udp, robot_faults  # noqa: E402
-from ladder_scripts.live_robot import truth_from  # noqa: E402
+from ladder_scripts import climb_operator, lcm_udp, robot_faults  # noqa: E402
+from ladder_scripts.live_robot import PERCEPTION, truth_from  # noqa: E402
 
 
 class FaultWords(unittest.TestCase):
@@ -48,6 +49,72 @@ class TruthLine(unittest.TestCase):
     def test_other_lines_are_none(self):
         for line in ("", "ladder plain, seed 3", "  40.1 s  rung 3 climbed, body at 1.2 m"):
             self.assertIsNone(truth_from(line))
+
+
+class ScriptedRobot:
+    """A controller that takes orders as told, without time: refusals are counted down."""
+
+    def __init__(self, state, session=7, refused_resets=0):
+        self.state_name, self.reason = state, "servo fault"
+        self.state = {"session_id": session, "estop_active": 0, "at_top": 0}
+        self.state_s = self.started_s = 0.0
+        self.refused_resets = refused_resets
+        self.done = []
+        self.has_fallen = False
+
+    def listen(self, seconds):
+        self.state_s = time.monotonic()
+
+    def dead(self):
+        return []
+
+    def log_of(self, name):
+        return f"{name}.log"
+
+    def hand(self, line):
+        self.done.append(line)
+
+    def kill(self, service):
+        self.done.append(f"kill {service}")
+
+    def start(self, service):
+        self.done.append(f"start {service}")
+
+    def order(self, *words):
+        self.done.append(words[0])
+        refused = words[0] == "reset" and self.refused_resets > 0
+        self.refused_resets -= refused
+        if not refused:
+            self.state_name = {"reset": "DISARMED", "arm": "HOLD"}[words[0]]
+        return types.SimpleNamespace(poll=lambda: int(refused), returncode=int(refused))
+
+
+class Operator(unittest.TestCase):
+    def operator(self, robot):
+        operator = climb_operator.ClimbOperator(robot)
+        operator.session = 7
+        operator.pause = lambda seconds: None
+        return operator
+
+    def test_a_reset_that_is_refused_is_given_again(self):
+        robot = ScriptedRobot("FAULT_HOLD", refused_resets=climb_operator.MAX_RESETS - 1)
+        self.operator(robot).recover()
+        self.assertEqual(robot.done, ["reset"] * climb_operator.MAX_RESETS + ["arm"])
+
+    def test_gives_up_with_the_reason_and_where_to_read_on(self):
+        robot = ScriptedRobot("FAULT_HOLD", refused_resets=1000)
+        with self.assertRaises(climb_operator.GaveUp) as gave_up:
+            self.operator(robot).recover()
+        self.assertEqual(robot.done, ["reset"] * climb_operator.MAX_RESETS)
+        for word in ("FAULT_HOLD", "servo fault", "climb.log", "OPERATION"):
+            self.assertIn(word, str(gave_up.exception))
+
+    def test_a_new_controller_is_armed_where_it_hangs(self):
+        robot = ScriptedRobot("DISARMED", session=8)
+        operator = self.operator(robot)
+        operator.recover()
+        self.assertEqual(robot.done, [f"{what} {service}" for service in PERCEPTION for what in ("kill", "start")] + ["arm"])
+        self.assertEqual(operator.session, 8)
 
 
 class SmallMessages(unittest.TestCase):
