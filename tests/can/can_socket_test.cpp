@@ -4,7 +4,6 @@
 #include "can/can_socket.h"
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -16,6 +15,7 @@
 
 #include "can/kernel_frame.h"
 #include "fake_line.h"
+#include "tests/support/temporary_folder.h"
 
 namespace can {
 namespace {
@@ -30,15 +30,8 @@ struct Pair {
 /// A listening unix: line.
 class Listener {
  public:
-  Listener() {
-    char folder[] = "/tmp/can_socket_test_XXXXXX";
-    path = std::string(::mkdtemp(folder)) + "/line";
-    listen();
-  }
-  ~Listener() {
-    close();
-    ::rmdir(path.substr(0, path.rfind('/')).c_str());
-  }
+  Listener() { listen(); }
+  ~Listener() { close(); }
   void listen() {
     fd = ::socket(AF_UNIX, SOCK_SEQPACKET, 0);
     sockaddr_un address{};
@@ -51,7 +44,8 @@ class Listener {
     ::close(fd);
     ::unlink(path.c_str());
   }
-  std::string path;
+  support::TemporaryFolder folder;
+  std::string path = folder / "line";
   int fd = -1;
 };
 

@@ -4,7 +4,6 @@
 // missing.
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "can/can_socket.h"
 #include "can/cia402_bus.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace can {
 namespace {
@@ -46,15 +46,11 @@ class CanopenPeer : public ::testing::Test {
   void SetUp() override {
     const std::string reason = why_not();
     if (!reason.empty()) GTEST_SKIP() << reason;
-    char folder[] = "/tmp/canopen_peer_XXXXXX";
-    path_ = std::string(::mkdtemp(folder)) + "/line";
   }
 
   void TearDown() override {
     bus.reset();
     bridge_.reset();
-    std::remove(path_.c_str());
-    std::remove(path_.substr(0, path_.rfind('/')).c_str());
   }
 
   /// The slave on its line, which is there afterwards.
@@ -130,7 +126,8 @@ class CanopenPeer : public ::testing::Test {
   AxisFeedback feedback;
 
  private:
-  std::string path_;
+  support::TemporaryFolder folder_;
+  std::string path_ = folder_ / "line";
   std::unique_ptr<support::ChildProcess> bridge_;
   std::unique_ptr<CanSocket> socket_;
 };

@@ -2,13 +2,13 @@
 // From the E-stop's wire to the frames on the servo bus: the simulated robot's line hub, a socket,
 // the lines, one control cycle, the master; all of it in virtual time, on a grid of 1 ms.
 #include <bitset>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 #include <poll.h>
 
 #include "cycle_bench.h"
 #include "simulator/plant/line_hub.h"
+#include "tests/support/temporary_folder.h"
 
 namespace climb_controller {
 namespace {
@@ -16,12 +16,6 @@ namespace {
 using climb::ControllerState;
 using climb::Fault;
 using climb::Order;
-
-std::string new_path() {
-  std::string folder = testing::TempDir() + "lines_to_bus_XXXXXX";
-  if (::mkdtemp(folder.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
-  return folder + "/lines";
-}
 
 /// A control word that makes an enabled drive begin its quick stop (CiA 402: bits 7, 2, 1 = 0 0 1).
 bool is_quick_stop(const simulator::BusFrame& frame) {
@@ -80,7 +74,8 @@ struct LinesToBus : testing::Test {
     return -1;
   }
 
-  std::string path = new_path();
+  support::TemporaryFolder folder;
+  std::string path = folder / "lines";
   gpio::LinesParams params;
   std::unique_ptr<gpio::LineChip> chip;
   std::optional<gpio::Lines> lines;

@@ -13,6 +13,7 @@
 #include "runtime/bus.h"
 #include "runtime/clock.h"
 #include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -31,27 +32,25 @@ class ClimbProcess : public ::testing::Test {
   void SetUp() override {
     static int next_port = 40'000 + getpid() % 2'000 * 8;
     url_ = "udpm://239.255.76.67:" + std::to_string(next_port++) + "?ttl=0";
-    folder_ = testing::TempDir() + "climb_process_XXXXXX";
-    ASSERT_NE(::mkdtemp(folder_.data()), nullptr);
     bus_ = std::make_unique<runtime::Bus>(url_);
     states_ = &bus_->newest(channels::kClimb);
     poses_ = &bus_->newest(channels::kPose);
     plant_ = std::make_unique<ChildProcess>(
         kBin + "/ladder_plant",
-        std::vector<std::string>{"--can", can(), "--lines", "unix:" + folder_ + "/lines",
+        std::vector<std::string>{"--can", can(), "--lines", "unix:" + folder_ / "lines",
                                  "--rungs-from-truth", url_, "--print_period_s", "0.05"});
-    for (int i = 0; i < 500 && ::access((folder_ + "/lines").c_str(), F_OK) != 0; ++i) {
+    for (int i = 0; i < 500 && ::access((folder_ / "lines").c_str(), F_OK) != 0; ++i) {
       usleep(10'000);
     }
   }
 
-  std::string can() const { return "unix:" + folder_ + "/can"; }
+  std::string can() const { return "unix:" + folder_ / "can"; }
   std::unique_ptr<ChildProcess> controller(const std::string& can_interface) const {
     return std::make_unique<ChildProcess>(
         kBin + "/climb_controller",
         std::vector<std::string>{"--url", url_, "--set", "climb.can.interface=" + can_interface,
-                                 "--set", "climb.lines.chip=unix:" + folder_ + "/lines", "--set",
-                                 "climb.flight_folder=" + folder_, "--set",
+                                 "--set", "climb.lines.chip=unix:" + folder_ / "lines", "--set",
+                                 "climb.flight_folder=" + folder_.path(), "--set",
                                  "climb.power_off_hold=brake"});
   }
   /// The exit code of ladder-command.
@@ -100,7 +99,7 @@ class ClimbProcess : public ::testing::Test {
   }
 
   std::string url_;
-  std::string folder_;
+  support::TemporaryFolder folder_;
   std::unique_ptr<runtime::Bus> bus_;
   runtime::Mailbox<climb_state_t>* states_ = nullptr;
   runtime::Mailbox<ladder_msgs::pose_t>* poses_ = nullptr;
@@ -210,8 +209,8 @@ TEST_F(ClimbProcess, SecondControllerRefusesToStart) {
   EXPECT_EQ(second->wait(10s), 3);
   EXPECT_THAT(second->output(), HasSubstr("another controller of this host"));
 
-  const std::string other_name = folder_ + "/other_name";
-  ASSERT_EQ(::symlink((folder_ + "/can").c_str(), other_name.c_str()), 0);
+  const std::string other_name = folder_ / "other_name";
+  ASSERT_EQ(::symlink((folder_ / "can").c_str(), other_name.c_str()), 0);
   const auto third = controller("unix:" + other_name);
   EXPECT_EQ(third->wait(10s), 3);
   EXPECT_THAT(third->output(), HasSubstr("another controller speaks"));

@@ -4,7 +4,6 @@
 #include "gpio/unix_lines.h"
 
 #include <atomic>
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <thread>
@@ -18,6 +17,7 @@
 
 #include "gpio/lines.h"
 #include "simulator/plant/line_hub.h"
+#include "tests/support/temporary_folder.h"
 
 namespace gpio {
 namespace {
@@ -51,13 +51,6 @@ struct HandHub {
   int hub = -1;
   int client = -1;  ///< belongs to the UnixLines made of it
 };
-
-/// A new path in a folder of its own.
-std::string new_path() {
-  std::string folder = testing::TempDir() + "gpio_unix_XXXXXX";
-  if (::mkdtemp(folder.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
-  return folder + "/lines";
-}
 
 // Packets of every wrong form, at the beginning or later, lose the chip: who says nonsense is not
 // believed about the E-stop either.
@@ -150,7 +143,8 @@ TEST(UnixLines, AFloodEnds) {
 
 // No hub, a path that is a file, one that is too long: told, not thrown.
 TEST(UnixLines, NoHub) {
-  EXPECT_THAT(UnixLines(new_path()).open(), HasSubstr("no line hub listens at"));
+  const support::TemporaryFolder folder;
+  EXPECT_THAT(UnixLines(folder / "lines").open(), HasSubstr("no line hub listens at"));
   EXPECT_THAT(UnixLines("/dev/null").open(), HasSubstr("no line hub listens at /dev/null"));
   EXPECT_THAT(UnixLines(std::string(200, 'x')).open(), HasSubstr("too long"));
 }
@@ -174,7 +168,8 @@ struct HubTest : testing::Test {
     if (hub) hub->receive();
     return lines.poll(now_us);
   }
-  std::string path = new_path();
+  support::TemporaryFolder folder;
+  std::string path = folder / "lines";
   LinesParams params;
   std::optional<simulator::LineHub> hub;
   std::int64_t now_us = 0;

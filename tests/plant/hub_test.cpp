@@ -16,15 +16,10 @@
 #include "simulator/plant/line_hub.h"
 #include "simulator/plant/robot_plant.h"
 #include "simulator/plant/unix_frame_server.h"
+#include "tests/support/temporary_folder.h"
 
 namespace simulator {
 namespace {
-
-std::string folder() {
-  std::string name = testing::TempDir() + "plant_hub_XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr) ADD_FAILURE() << "no temporary folder";
-  return name;
-}
 
 /// A client's end of a socketpair; the other end belongs to the server.
 struct Peer {
@@ -99,7 +94,8 @@ TEST(BusHub, PlantBehindASocket) {
 // Clients that come, hear each other, and go again; a second server at the same path is refused; a
 // socket file left by a dead one is replaced.
 TEST(BusHub, ListensAtAPath) {
-  const std::string path = folder() + "/can";
+  const support::TemporaryFolder folder;
+  const std::string path = folder / "can";
   std::ofstream(path) << "left over";
   UnixFrameServer server(path);
   EXPECT_THROW(UnixFrameServer second(path), DoorError);
@@ -180,15 +176,15 @@ TEST(LineHub, TestersHand) {
 
 // gpio-sim's pull files get the driver's words, only for what changed; a missing chip is refused.
 TEST(SimulatedChip, WritesPulls) {
-  const std::string chip_folder = folder();
-  EXPECT_THROW(SimulatedChip(chip_folder, {0, 1, 2, 3, 4}), DoorError);
+  const support::TemporaryFolder folder;
+  EXPECT_THROW(SimulatedChip(folder.path(), {0, 1, 2, 3, 4}), DoorError);
   for (int i = 0; i < kNumLines; ++i) {
-    const std::string line = chip_folder + "/sim_gpio" + std::to_string(i);
+    const std::string line = folder / "sim_gpio" + std::to_string(i);
     ASSERT_EQ(std::system(("mkdir " + line + " && touch " + line + "/pull").c_str()), 0);
   }
-  SimulatedChip chip(chip_folder, {4, 3, 2, 1, 0});
+  SimulatedChip chip(folder.path(), {4, 3, 2, 1, 0});
   const auto pull = [&](int offset) {
-    std::ifstream file(chip_folder + "/sim_gpio" + std::to_string(offset) + "/pull");
+    std::ifstream file(folder / "sim_gpio" + std::to_string(offset) + "/pull");
     std::string word;
     file >> word;
     return word;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program ladder_plant itself: it serves its sockets, obeys a tester's hand, and ends cleanly.
 #include <chrono>
-#include <cstdlib>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,6 +12,8 @@
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/support/temporary_folder.h"
 
 namespace {
 
@@ -69,12 +70,11 @@ TEST(PlantProgram, RefusesBadArguments) {
 // A controller's door: a drive answers over the socket, the E-stop wire is cut by a tester's record
 // and read back low; SIGTERM ends with 0 and removes both socket files.
 TEST(PlantProgram, ServesAndEnds) {
-  std::string folder = testing::TempDir() + "plant_process_XXXXXX";
-  ASSERT_NE(::mkdtemp(folder.data()), nullptr);
-  const pid_t plant = start({"--can", "unix:" + folder + "/can", "--lines",
-                             "unix:" + folder + "/lines", "--print_period_s", "0"});
-  const int can = connect_to(folder + "/can");
-  const int lines = connect_to(folder + "/lines");
+  const support::TemporaryFolder folder;
+  const pid_t plant = start({"--can", "unix:" + folder / "can", "--lines",
+                             "unix:" + folder / "lines", "--print_period_s", "0"});
+  const int can = connect_to(folder / "can");
+  const int lines = connect_to(folder / "lines");
   ASSERT_GE(can, 0);
   ASSERT_GE(lines, 0);
 
@@ -106,8 +106,8 @@ TEST(PlantProgram, ServesAndEnds) {
 
   ASSERT_EQ(::kill(plant, SIGTERM), 0);
   EXPECT_EQ(exit_code(plant), 0);
-  EXPECT_NE(::access((folder + "/can").c_str(), F_OK), 0);
-  EXPECT_NE(::access((folder + "/lines").c_str(), F_OK), 0);
+  EXPECT_NE(::access((folder / "can").c_str(), F_OK), 0);
+  EXPECT_NE(::access((folder / "lines").c_str(), F_OK), 0);
   ::close(can);
   ::close(lines);
 }

@@ -13,6 +13,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/support/temporary_folder.h"
+
 namespace {
 
 int run(const std::string& command) {
@@ -30,14 +32,9 @@ const std::string kScore = LADDER_SCORE;
 
 class Programs : public ::testing::Test {
  protected:
-  Programs() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "ladder_programs_XXXXXX");
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~Programs() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_ / name; }
 
-  std::filesystem::path folder_;
+  support::TemporaryFolder folder_;
 };
 
 // Wrong arguments are 2, help is 0, a bus or file that is not there is 3 (reader: 2).
