@@ -98,14 +98,15 @@ RungSurface PaperMode::to_surface(const NodeCloud& cloud, const PaperRung& rung,
 }
 
 void PaperMode::write_state(LadderEstimate& estimate) {
-  // PAPER: has no ladder test; any trusted rung makes a ladder. docs/EQUATIONS.md
+  // PAPER: has no ladder test; trusted rungs make a ladder as soon as they have a spacing, without
+  // which no ladder can be told. docs/EQUATIONS.md
   heights_m_.clear();
   for (const Rung& rung : estimate.rungs) {
     if (rung.state != RungState::kTrusted) continue;
     heights_m_.push_back(0.5 * (rung.end0_m.z() + rung.end1_m.z()));
   }
-  estimate.state = heights_m_.empty() ? LadderState::kNone : LadderState::kConfirmed;
   const Spacing spacing = fit_spacing(heights_m_, params_.test);
+  estimate.state = spacing.spacing_m > 0.0 ? LadderState::kConfirmed : LadderState::kNone;
   estimate.spacing_m = spacing.spacing_m;
   estimate.spacing_sigma_m = spacing.sigma_m;
 }
