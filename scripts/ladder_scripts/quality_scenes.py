@@ -82,6 +82,9 @@ HELD_OUT = {
     "dark_wall": scene("plain", "--wall_reflectance", 0.04),
     "white_wall": scene("plain", "--wall_reflectance", 0.95),
     **{name: scene(name) for name in "doorway fence two_ladders steps".split()},
+    "field": scene("doorway", "--rail_diameter_m", 0.04, "--rung_section", "oval", "--rung_diameter_m", 0.024, "--clear_width_m", 0.43,
+                   "--spacing_m", 0.28, "--noise_share", 0.013, "--pixel_bias_m", 0.003, "--random_dropout", 0.1, "--extrinsic_sigma_m", 0.003,
+                   "--extrinsic_sigma_deg", 0.3),
     **{name: scene(name, is_ladder=False) for name in "narrow_shelf chair pipes towel_rail gate".split()},
 }
 ALL = {**KINDS, **HELD_OUT}
