@@ -208,21 +208,27 @@ void add_fence(SceneBuilder& builder, double wall_m) {
 }
 
 /// Another ladder beside this one, at the side that is farther from the robot, with its rungs at
-/// other heights. Not in the truth: the nearer one is asked for.
+/// other heights. Rungs of both are in the truth.
 void add_second_ladder(SceneBuilder& builder, const LadderShape& shape) {
+  const int num_rungs = builder.params().num_rungs;
+  const double spacing_m = builder.params().spacing_m;
   const double side = builder.params().yaw_deg > 0.0 ? -1.0 : 1.0;
   const double middle_y = side * (2.0 * shape.half_width_m + builder.draw(0.25, 0.45));
-  const double top_m =
-      shape.first_height_m + builder.params().num_rungs * builder.params().spacing_m;
+  const double half_height = 0.5 * (shape.first_height_m + num_rungs * spacing_m);
   for (const double edge : {1.0, -1.0}) {
-    builder.box({0.0, middle_y + edge * shape.half_width_m, 0.5 * top_m},
-                {kRailHalfDepth_m, kRailHalfWidth_m, 0.5 * top_m});
+    const double y = middle_y + edge * (shape.half_width_m + kRailHalfWidth_m);
+    const int index =
+        builder.true_rail({{0.0, y, 0.0}, {0.0, y, 2.0 * half_height}, kRailHalfWidth_m});
+    mark(builder.box({0.0, y, half_height}, {kRailHalfDepth_m, kRailHalfWidth_m, half_height}),
+         Part::kRail, index, shape.reflectance);
   }
   const double first_m = shape.first_height_m - builder.draw(0.05, 0.2);
-  for (int i = 0; i < builder.params().num_rungs; ++i) {
-    const double z = first_m + i * builder.params().spacing_m;
-    builder.rod({0.0, middle_y + shape.half_width_m, z}, {0.0, middle_y - shape.half_width_m, z},
-                shape.radius_m);
+  for (int i = 0; i < num_rungs; ++i) {
+    const Vector3d left(0.0, middle_y + shape.half_width_m, first_m + i * spacing_m);
+    const Vector3d right(0.0, middle_y - shape.half_width_m, left.z());
+    const int index =
+        builder.true_rung({num_rungs + i, RungKind::kSound, left, right, shape.radius_m});
+    mark(builder.rod(left, right, shape.radius_m), Part::kRung, index, shape.reflectance);
   }
 }
 
