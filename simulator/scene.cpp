@@ -75,6 +75,7 @@ std::string check(const SceneParams& params) {
   if (params.rail_diameter_m && !within(*params.rail_diameter_m, 0.01, 0.12)) {
     return "rail_diameter_m must be in [0.01, 0.12]";
   }
+  if (!within(params.rail_width_m, 0.002, 0.12)) return "rail_width_m must be in [0.002, 0.12]";
   if (params.wall_reflectance && !within(*params.wall_reflectance, 0.01, 1.0)) {
     return "wall_reflectance must be in [0.01, 1]";
   }

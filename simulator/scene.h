@@ -116,6 +116,7 @@ struct SceneParams {
   std::optional<int> damaged_rung;  ///< of kMissing, kBent, kBroken, kLoose; none: from the seed
   RungSection rung_section = RungSection::kRound;  ///< of sound rungs
   std::optional<double> rail_diameter_m;           ///< [0.01, 0.12]; none: flat bars
+  double rail_width_m = 0.01;                      ///< [0.002, 0.12] of flat bars, seen from before
   std::optional<double> wall_reflectance;          ///< [0.01, 1]; none: from the seed
 };
 

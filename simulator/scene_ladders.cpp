@@ -12,11 +12,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRailHalfDepth_m = 0.025;  // flat bar 50 x 10 mm, narrow side to the robot
-constexpr double kRailHalfWidth_m = 0.005;
-constexpr double kBentDrop_m = 0.07;  // of the right end
-constexpr double kBentSag_m = 0.05;   // of the middle
-constexpr double kLooseDrop = 0.3;    // of the right end / clear width: 17 deg
+constexpr double kRailHalfDepth_m = 0.025;  // flat bar, narrow side to the robot
+constexpr double kBentDrop_m = 0.07;        // of the right end
+constexpr double kBentSag_m = 0.05;         // of the middle
+constexpr double kLooseDrop = 0.3;          // of the right end / clear width: 17 deg
 constexpr double kDarkFactor = 0.2;
 constexpr double kTreadHalfDepth_m = 0.05;
 
@@ -24,7 +23,7 @@ struct LadderShape {
   double radius_m = 0.0;
   double first_height_m = 0.0;
   double half_width_m = 0.0;  // of the clear width
-  double rail_half_width_m = kRailHalfWidth_m;
+  double rail_half_width_m = 0.0;
   double reflectance = 0.5;
   int damaged = -1;  // which rung is missing, bent, broken or loose
 };
@@ -58,7 +57,7 @@ LadderShape draw_shape(SceneBuilder& builder) {
   shape.radius_m = radius_m(builder);
   shape.first_height_m = params.spacing_m * builder.draw(0.85, 1.15);
   shape.half_width_m = 0.5 * params.clear_width_m;
-  if (params.rail_diameter_m) shape.rail_half_width_m = 0.5 * *params.rail_diameter_m;
+  shape.rail_half_width_m = 0.5 * params.rail_diameter_m.value_or(params.rail_width_m);
   shape.reflectance = builder.draw(0.4, 0.7);
   // Among the rungs that the heads see well.
   const int damaged =
@@ -216,10 +215,11 @@ void add_second_ladder(SceneBuilder& builder, const LadderShape& shape) {
   const double middle_y = side * (2.0 * shape.half_width_m + builder.draw(0.25, 0.45));
   const double half_height = 0.5 * (shape.first_height_m + num_rungs * spacing_m);
   for (const double edge : {1.0, -1.0}) {
-    const double y = middle_y + edge * (shape.half_width_m + kRailHalfWidth_m);
+    const double y = middle_y + edge * (shape.half_width_m + shape.rail_half_width_m);
     const int index =
-        builder.true_rail({{0.0, y, 0.0}, {0.0, y, 2.0 * half_height}, kRailHalfWidth_m});
-    mark(builder.box({0.0, y, half_height}, {kRailHalfDepth_m, kRailHalfWidth_m, half_height}),
+        builder.true_rail({{0.0, y, 0.0}, {0.0, y, 2.0 * half_height}, shape.rail_half_width_m});
+    mark(builder.box({0.0, y, half_height},
+                     {kRailHalfDepth_m, shape.rail_half_width_m, half_height}),
          Part::kRail, index, shape.reflectance);
   }
   const double first_m = shape.first_height_m - builder.draw(0.05, 0.2);

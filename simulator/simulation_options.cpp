@@ -19,6 +19,7 @@ SimulationOptions::SimulationOptions(CLI::App& app) {
   app.add_option("--num_rungs", s.scene.num_rungs);
   app.add_option("--rung_section", section_, "round, oval, flat_top or tread");
   app.add_option("--rail_diameter_m", rail_diameter_m_, "round rails instead of flat bars");
+  app.add_option("--rail_width_m", s.scene.rail_width_m, "of flat bars, seen from before");
   app.add_option("--wall_reflectance", wall_reflectance_, "0 = black .. 1 = white");
   app.add_option("--layout", layout_, "heads_still or heads_climb");
   app.add_option("--body_height_m", s.body_height_m);

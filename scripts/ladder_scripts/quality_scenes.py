@@ -76,6 +76,7 @@ HELD_OUT = {
     "oval": scene("plain", "--rung_section", "oval"),
     "flat_top": scene("plain", "--rung_section", "flat_top"),
     "round_rails": scene("plain", varying=tuple(("--rail_diameter_m", mm / 1000) for mm in (34, 42, 48))),
+    "broad_rails": scene("plain", varying=tuple(("--rail_width_m", mm / 1000) for mm in (25, 40, 60))),
     "sizes": scene("plain", varying=tuple(
         ("--clear_width_m", width_m, "--spacing_m", spacing_m, "--rung_diameter_m", diameter_m)
         for width_m, spacing_m, diameter_m in ((0.35, 0.25, 0.022), (0.5, 0.28, 0.032), (0.45, 0.33, 0.04), (0.38, 0.35, 0.02)))),

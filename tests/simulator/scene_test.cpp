@@ -69,6 +69,9 @@ TEST(SceneParams, CheckNamesTheField) {
   params.rail_diameter_m = 0.5;
   EXPECT_THAT(check(params), HasSubstr("rail_diameter_m"));
   params = {};
+  params.rail_width_m = 0.0;
+  EXPECT_THAT(check(params), HasSubstr("rail_width_m"));
+  params = {};
   params.wall_reflectance = 0.0;
   EXPECT_THAT(check(params), HasSubstr("wall_reflectance"));
   EXPECT_THROW(rung_section_from_string("triangular"), std::invalid_argument);
