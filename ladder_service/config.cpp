@@ -92,6 +92,7 @@ void read(ConfigTable table, ladder::MeasureParams& params) {
   table.read("head_min_share", params.head_min_share);
   table.read("head_linearity", params.head_linearity);
   table.read("min_weight", params.min_weight);
+  table.read("whole_height", params.whole_height);
   table.read("stub_gap_m", params.stub_gap_m);
   table.read("stub_margin_m", params.stub_margin_m);
   table.read("sag_flag_m", params.sag_flag_m);
@@ -107,6 +108,9 @@ void read(ConfigTable table, ladder::AlignParams& params) {
   table.read("sigma_range_m", params.sigma_range_m);
   table.read("sigma_gravity", params.sigma_gravity);
   table.read("sigma_plane_m", params.sigma_plane_m);
+  table.read("sigma_bar_m", params.sigma_bar_m);
+  table.read("min_bar_weight", params.min_bar_weight);
+  table.read("told_share", params.told_share);
   table.read("keep", params.keep);
   table.read("frame_share", params.frame_share);
   table.read("far_m", params.far_m);

@@ -21,6 +21,9 @@ BarDetector::BarDetector(const LadderParams& params)
   used_.reserve(params.max_bars);
   deep_.reserve(params.max_bars);
   radii_.reserve(params.max_bars);
+  ladder_.rungs.reserve(params.max_bars);
+  heights_m_.reserve(params.max_bars);
+  levels_.reserve(params.max_bars);
 }
 
 const Detections& BarDetector::detect(const NodeCloud& seen) {
@@ -33,13 +36,15 @@ const Detections& BarDetector::detect(const NodeCloud& seen) {
   const LadderHypothesis& ladder = test_.find(nodes_, bars, body_m);
   used_.assign(bars.rungs.size(), 0);
   found_.is_ladder = false;
+  ladder_.left = -1;
+  ladder_.rungs.clear();
   if (ladder.found()) measure_ladder(cloud, bars, ladder);
   for (int i = 0; i < static_cast<int>(bars.rails.size()); ++i) {
     if (found_.is_ladder && (i == ladder.left || i == ladder.right)) continue;
     found_.rails.push_back(measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i], {}));
   }
   measure_others(cloud, bars);
-  alignment_.learn(seen, nodes_, bars);
+  alignment_.learn(seen, nodes_, bars, ladder_);
   return found_;
 }
 
@@ -74,6 +79,45 @@ void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
   found_.is_ladder = true;
   for (const Joint& joint : ladder.joints) used_[joint.bar] = 1;
   keep_one_per_level();
+  note_ladder(bars, ladder);
+}
+
+// A bent or broken rung, or one of another kind, stands where it stands.
+bool BarDetector::is_exemplary(const MeasuredBar& bar) const {
+  const MeasureParams& p = params_.measure;
+  // Heads that are far apart bend a rung that two of them see.
+  const double most_sag_m = std::max(p.sag_flag_m, 2.0 * alignment_.misfit_m());
+  return !bar.is_stub() && !bar.is_v && bar.sag_m <= most_sag_m &&
+         bar.tilt_sin <= p.tilt_flag_sin && bar.is_alike;
+}
+
+void BarDetector::note_ladder(const BarSet& bars, const LadderHypothesis& ladder) {
+  ladder_.left = ladder.left;
+  ladder_.right = ladder.right;
+  const MeasuredRail& left = found_.rails[0];
+  ladder_.up = left.axis.direction;
+  ladder_.along = unit(left.axis.across(found_.rails[1].axis.origin_m), Eigen::Vector3d::UnitY());
+  // Ascending; bars are kept in the order of their weights.
+  std::vector<MeasuredBar>& rungs = found_.bars;
+  std::sort(rungs.begin(), rungs.end(), [&](const MeasuredBar& a, const MeasuredBar& b) {
+    const double height_a_m = left.axis.along(a.middle_m());
+    const double height_b_m = left.axis.along(b.middle_m());
+    return height_a_m < height_b_m || (height_a_m == height_b_m && a.bar < b.bar);
+  });
+  heights_m_.clear();
+  for (const MeasuredBar& rung : rungs) {
+    if (!is_exemplary(rung)) continue;
+    const Axis& axis = bars.rungs[rung.bar].axis;
+    const double trim_m = params_.measure.joint_trim_m;
+    heights_m_.push_back(left.axis.along(rung.middle_m()));
+    ladder_.rungs.push_back({rung.bar, 0, axis.along(rung.end0_m) + trim_m,
+                             axis.along(rung.end1_m) - trim_m, rung.front_m,
+                             params_.measure.whole_height * (rung.radius_m - rung.lost_m)});
+  }
+  levels_.assign(heights_m_.size(), 0);
+  number_levels(heights_m_, params_.test, levels_);
+  for (std::size_t i = 0; i < levels_.size(); ++i) ladder_.rungs[i].level = levels_[i];
+  std::erase_if(ladder_.rungs, [](const SeenRung& rung) { return rung.level < 0; });
 }
 
 // The rungs of a ladder are alike: the median of their radii, by weight, is better known than each.
@@ -89,9 +133,8 @@ void BarDetector::push_back_together() {
   const double radius_m = median_radius_m();
   for (MeasuredBar& bar : bars) {
     // One of another kind keeps its own.
-    const bool is_alike =
-        std::abs(bar.radius_m - radius_m) <= params_.measure.radius_alike * radius_m;
-    if (is_alike) bar.radius_m = radius_m;
+    bar.is_alike = std::abs(bar.radius_m - radius_m) <= params_.measure.radius_alike * radius_m;
+    if (bar.is_alike) bar.radius_m = radius_m;
     if (is_square) {
       BarMeasurement::push_back_square(square_height(bar.depth.dot(up)), bar);
     } else {

@@ -14,6 +14,7 @@
 #include "ladder/ladder_test.h"
 #include "ladder/measured_bar.h"
 #include "ladder/rung_profile.h"
+#include "ladder/seen_ladder.h"
 
 namespace ladder {
 
@@ -35,6 +36,8 @@ class BarDetector {
 
  private:
   void measure_ladder(const NodeCloud& cloud, const BarSet& bars, const LadderHypothesis& ladder);
+  void note_ladder(const BarSet& bars, const LadderHypothesis& ladder);
+  bool is_exemplary(const MeasuredBar& bar) const;
   void measure_others(const NodeCloud& cloud, const BarSet& bars);
   void push_back_together();
   double median_radius_m();
@@ -51,9 +54,12 @@ class BarDetector {
   BarMeasurement measurement_;
   RungProfile profile_;
   Detections found_;
+  SeenLadder ladder_;
   std::vector<char> used_;
   std::vector<double> deep_;
   std::vector<std::pair<double, double>> radii_;  ///< with their weights
+  std::vector<double> heights_m_;
+  std::vector<int> levels_;
 };
 
 }  // namespace ladder

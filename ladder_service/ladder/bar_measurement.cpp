@@ -61,6 +61,12 @@ Eigen::Matrix3d spread_within_heads(const std::array<MomentSum, kNumHeads>& head
   return covariance;
 }
 
+void move_back(double by_m, MeasuredBar& bar) {
+  bar.front_m = by_m;
+  bar.end0_m += by_m * bar.depth;
+  bar.end1_m += by_m * bar.depth;
+}
+
 }  // namespace
 
 std::optional<MeasuredBar> BarMeasurement::measure(const BarFrame& frame, int bar_index,
@@ -248,16 +254,12 @@ void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit
 void BarMeasurement::push_back(double radius_m, MeasuredBar& bar) {
   constexpr double kLeastVisible = 0.3;  // of the radius
   const double visible_m = std::clamp(radius_m - bar.lost_m, kLeastVisible * radius_m, radius_m);
-  const Eigen::Vector3d by_m = mean_chord_depth_m(radius_m, visible_m) * bar.depth;
-  bar.end0_m += by_m;
-  bar.end1_m += by_m;
+  move_back(mean_chord_depth_m(radius_m, visible_m), bar);
 }
 
 // Front and side together are on average as far before the axis, by cosine and sine of the angle.
 void BarMeasurement::push_back_square(double height, MeasuredBar& bar) {
-  const Eigen::Vector3d by_m = bar.radius_m / height * bar.depth;
-  bar.end0_m += by_m;
-  bar.end1_m += by_m;
+  move_back(bar.radius_m / height, bar);
 }
 
 void BarMeasurement::find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const {

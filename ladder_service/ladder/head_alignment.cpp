@@ -73,6 +73,7 @@ void HeadAlignment::reset() {
   equations_.clear();
   corrections_ = {};
   range_error_ = {};
+  wall_ = floor_ = ladder_ = {};
   misfit_m_ = 0.0;
   num_misfits_ = 0;
   is_misfit_ = false;
@@ -105,17 +106,32 @@ const NodeCloud& HeadAlignment::correct(const NodeCloud& cloud) {
   return aligned_;
 }
 
-void HeadAlignment::learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars) {
+void HeadAlignment::Told::begin_frame(const AlignParams& params) {
+  sum_ *= params.keep;
+  share_ = std::clamp(1.0 - sum_, 0.0, params.told_share);
+  is_said_ = false;
+}
+
+double HeadAlignment::Told::say() {
+  is_said_ = true;
+  return share_;
+}
+
+void HeadAlignment::learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars,
+                          const SeenLadder& ladder) {
   if (!params_.enabled) return;
   misfits_m_.clear();
   // One head alone has nothing to agree with.
   if (std::count(seen.head_valid.begin(), seen.head_valid.end(), true) < 2) return;
   equations_.forget(params_.keep);
+  for (Told* told : {&wall_, &floor_, &ladder_}) told->begin_frame(params_);
   const int num_planes = std::min(params_.max_planes, static_cast<int>(seen.planes.size()));
   for (int plane = 0; plane < num_planes; ++plane) learn_plane(seen, nodes, plane);
   for (const std::vector<Bar>* kind : {&bars.rungs, &bars.rails}) {
     for (const Bar& bar : *kind) note_bar(seen, nodes, bars, bar);
   }
+  if (ladder.found()) add_ladder({seen, nodes, bars}, ladder, params_, ladder_.say(), equations_);
+  for (Told* told : {&wall_, &floor_, &ladder_}) told->end_frame();
   follow_misfit();
   solve();
 }
@@ -246,20 +262,19 @@ void HeadAlignment::add_surface(const NodeCloud& cloud, const Surface& surface) 
 // The plane leans by its shape: its true normal is normal - along shape[1] - up shape[2].
 void HeadAlignment::add_gravity(const NodeCloud& cloud, int plane, const Surface& surface) {
   const NodeClass kind = cloud.planes[plane].plane_class;
-  // Gravity says the same in every frame: all frames together have the weight of one.
-  const double weight = (1.0 - params_.keep) / (params_.sigma_gravity * params_.sigma_gravity);
   const Vector3d& n = surface.normal;
-  const auto add = [&](const Vector3d& level) {
+  const double sigma2 = params_.sigma_gravity * params_.sigma_gravity;
+  const auto add = [&](const Vector3d& level, Told& told) {
     equations_.add_condition({0.0, surface.along.dot(level), surface.up.dot(level)}, n.dot(level),
-                             weight);
+                             told.say() / sigma2);
   };
   if (kind == NodeClass::kWall && std::abs(n.z()) < params_.upright_max_sin) {
-    add(Vector3d::UnitZ());
+    add(Vector3d::UnitZ(), wall_);
   }
   const double level2 = 1.0 - params_.upright_max_sin * params_.upright_max_sin;
   if (kind == NodeClass::kSafeGround && n.z() * n.z() > level2) {
-    add(Vector3d::UnitX());
-    add(Vector3d::UnitY());
+    add(Vector3d::UnitX(), floor_);
+    add(Vector3d::UnitY(), floor_);
   }
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the heads really sit and how far they err in range: a small turn and shift of each and an
 // error over range that they have in common, so that planes are flat and the same for every head,
-// floors level and walls upright. Held to what mountings and heads of this kind may have; what
+// floors level and walls upright, and ladders
+// regular. Held to what mountings and heads of this kind may have; what
 // nothing shows stays zero, as does what all heads have in common and gravity does not show. Learnt
 // from the cloud as it came: no estimate feeds itself. Rungs and rails teach nothing, they only
 // show how far the heads are apart: what is seen of them depends on where they are seen from.
@@ -16,6 +17,7 @@
 #include "ladder/bar.h"
 #include "ladder/node_cloud.h"
 #include "ladder/params.h"
+#include "ladder/seen_ladder.h"
 
 namespace ladder {
 
@@ -27,8 +29,9 @@ class HeadAlignment {
   /// one. Stands until the next call.
   const NodeCloud& correct(const NodeCloud& cloud);
 
-  /// Learns from the cloud as it came and the bars found in the corrected one.
-  void learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars);
+  /// Learns from the cloud as it came and the bars and the ladder found in the corrected one.
+  void learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars,
+             const SeenLadder& ladder = {});
 
   void reset();
   /// How far the heads are apart on what they see together, without corrections; averaged.
@@ -48,6 +51,20 @@ class HeadAlignment {
     Eigen::Vector3d point_m = Eigen::Vector3d::Zero();
     double variance_m2 = 0.0;  ///< of the mean across the surface
     double thickness = 0.0;    ///< variance across the surface / range^2
+  };
+  /// What every frame says alike, gravity or a ladder's regularity, counts once, however long it is
+  /// looked at.
+  class Told {
+   public:
+    void begin_frame(const AlignParams& params);
+    /// What this frame may say, in parts of everything.
+    double say();
+    void end_frame() { sum_ += is_said_ ? share_ : 0.0; }
+
+   private:
+    double sum_ = 0.0;
+    double share_ = 0.0;
+    bool is_said_ = false;
   };
   /// A plane: samples lie along `normal` as a linear function of the other two directions.
   struct Surface {
@@ -73,6 +90,7 @@ class HeadAlignment {
   AlignmentEquations equations_;
   HeadCorrections corrections_;
   RangeError range_error_;
+  Told wall_, floor_, ladder_;
   std::vector<Sample> samples_;
   std::vector<double> thicknesses_;
   std::vector<double> misfits_m_;  ///< of this frame: each head on each surface and bar

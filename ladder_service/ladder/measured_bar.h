@@ -23,12 +23,14 @@ struct MeasuredBar {
   Eigen::Vector3d depth = Eigen::Vector3d::UnitX();  ///< unit, from the front towards the axis
   double weight = 0.0;                               ///< points
   double radius_m = 0.0;                             ///< half the height
-  double lost_m = 0.0;  ///< so much of the height is lost at either edge; < 0: gained
+  double front_m = 0.0;  ///< from the visible front to the axis, once pushed back
+  double lost_m = 0.0;   ///< so much of the height is lost at either edge; < 0: gained
   double sag_m = 0.0;
   double bend_tan = 0.0;  ///< of the angle between its halves
   double tilt_sin = 0.0;  ///< of the angle off the right angle to the rails
   double deep = 0.0;      ///< points behind it at its height / own points
   bool on_ladder = false;
+  bool is_alike = false;     ///< its radius is that of the ladder's rungs
   bool reaches_end0 = true;  ///< false: ends before the rail
   bool reaches_end1 = true;
   bool is_v = false;  ///< joined from two halves that meet at an angle

@@ -108,6 +108,8 @@ struct MeasureParams {
   double head_min_share = 0.8;         ///< ... and such heads must carry this share (recipe)
   double head_linearity = 6.0;         ///< (recipe)
   double min_weight = 8.0;             ///< after the trim (recipe)
+  double whole_height = 0.85;          ///< a head that sees less of a rung's height sees it cut off
+                                       ///< by the edge of its image (own)
   double stub_gap_m = 0.06;            ///< seen end farther from the rail: stub (recipe)
   double stub_margin_m = 0.012;        ///< the stub's end beyond its last node (recipe)
   double sag_flag_m = 0.007;           ///< (recipe)
@@ -126,6 +128,9 @@ struct AlignParams {
   double sigma_gravity = 0.002;   ///< sine of the lean of walls and floors (own: builders' 8 mm on
                                   ///< 2.5 m, as 1.6 sigma)
   double sigma_plane_m = 0.003;   ///< a node's mean off a true plane (own)
+  double sigma_bar_m = 0.0015;    ///< what a head sees of a rung off where it should be (own)
+  double min_bar_weight = 30.0;   ///< points of a head on a rung, to be counted (own)
+  double told_share = 0.1;        ///< of what is the same in every frame, told by one frame (own)
   double keep = 0.99;             ///< older frames count so much less, each (own)
   double frame_share = 0.2;       ///< of a frame's points are new: 1 - moment_forget
   double far_m = 0.08;            ///< planes most of whose nodes are farther off are none (own)
