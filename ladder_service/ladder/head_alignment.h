@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the heads really sit and how far they err in range: a small turn and shift of each and an
 // error over range that they have in common, so that planes are flat and the same for every head,
-// floors level and walls upright, and ladders
-// regular. Held to what mountings and heads of this kind may have; what
-// nothing shows stays zero, as does what all heads have in common and gravity does not show. Learnt
-// from the cloud as it came: no estimate feeds itself. Rungs and rails teach nothing, they only
-// show how far the heads are apart: what is seen of them depends on where they are seen from.
+// floors level, walls upright and ladders regular (seen_ladder.h). Held to what mountings and heads
+// of this kind may have; what nothing shows stays zero, as does what all heads have in common and
+// gravity does not show. Learnt from the cloud as it came: no estimate feeds itself. Other bars
+// teach nothing, they only show how far the heads are apart: what is seen of them depends on where
+// they are seen from.
 #pragma once
 
 #include <array>

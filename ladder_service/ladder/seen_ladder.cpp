@@ -111,14 +111,15 @@ void number_levels(std::span<const double> heights_m, const LadderTestParams& pa
   double step_m = std::numeric_limits<double>::max();
   for (std::size_t i = 1; i < heights_m.size(); ++i) {
     const double distance_m = heights_m[i] - heights_m[i - 1];
-    if (distance_m > params.min_joint_distance_m) step_m = std::min(step_m, distance_m);
+    if (distance_m > params.frame_min_spacing_m) step_m = std::min(step_m, distance_m);
   }
   std::size_t last = 0;
   for (std::size_t i = 0; i < heights_m.size(); ++i) {
     const double steps = (heights_m[i] - heights_m[last]) / step_m;
     const double whole = std::floor(steps + 0.5);
     levels[i] = i == 0 ? 0 : -1;
-    if (i == 0 || whole < 1.0 || std::abs(steps - whole) > params.spacing_tolerance) continue;
+    const bool is_whole = whole >= 1.0 && std::abs(steps - whole) <= params.spacing_tolerance;
+    if (i == 0 || !is_whole) continue;
     levels[i] = levels[last] + static_cast<int>(whole);
     last = i;
   }
