@@ -15,6 +15,8 @@ void read(ConfigTable table, ladder::BarParams& params) {
   table.read("seed_linearity", params.seed_linearity);
   table.read("level_max_dz", params.level_max_dz);
   table.read("upright_min_dz", params.upright_min_dz);
+  table.read("noise_sigmas", params.noise_sigmas);
+  table.read("max_noise_share", params.max_noise_share);
   table.read("gap_m", params.gap_m);
   table.read("num_refits", params.num_refits);
   table.read("reach_m", params.reach_m);

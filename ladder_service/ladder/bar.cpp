@@ -3,9 +3,11 @@
 
 #include <algorithm>
 
+#include "ladder/range_noise.h"
+
 namespace ladder {
 
-bool fit(const BarNodes& nodes, std::span<const int> members, Bar& bar) {
+bool fit(const BarNodes& nodes, std::span<const int> members, double max_noise_share, Bar& bar) {
   if (members.size() < 3) return false;
   bar.sum = MomentSum{};
   Eigen::Vector3d eye_sum_m = Eigen::Vector3d::Zero();
@@ -13,11 +15,11 @@ bool fit(const BarNodes& nodes, std::span<const int> members, Bar& bar) {
     bar.sum.add(nodes.sum(k));
     eye_sum_m += nodes[k].eye_sum_m;
   }
-  bar.spread = principal_axis(bar.sum.covariance());
+  bar.eye_m = eye_sum_m / bar.sum.weight;
+  bar.spread = principal_axis(sharp_covariance(bar.sum, bar.eye_m, max_noise_share));
   const bool turned = bar.spread.direction.dot(bar.axis.direction) < 0.0;
   bar.axis = {bar.sum.mean(),
               turned ? Eigen::Vector3d(-bar.spread.direction) : bar.spread.direction};
-  bar.eye_m = eye_sum_m / bar.sum.weight;
   bar.from_m = bar.to_m = bar.axis.along(nodes.position_m(members[0]));
   for (const int k : members) {
     const double t = bar.axis.along(nodes.position_m(k));

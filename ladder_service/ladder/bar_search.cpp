@@ -168,7 +168,7 @@ void BarSearch::join(const BarNodes& nodes, Bar& a, const Bar& b) {
   a.first_member = static_cast<int>(set_.members.size());
   a.num_members = static_cast<int>(joined_.size());
   set_.members.insert(set_.members.end(), joined_.begin(), joined_.end());
-  fit(nodes, joined_, a);
+  fit(nodes, joined_, params_.bar.max_noise_share, a);
 }
 
 void BarSearch::merge_pieces(const BarNodes& nodes) {

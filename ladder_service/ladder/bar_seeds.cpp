@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ladder/principal_axis.h"
+#include "ladder/range_noise.h"
 
 namespace ladder {
 namespace {
@@ -35,7 +36,8 @@ void find_seeds(const BarNodes& nodes, const BarParams& params, const SeedSearch
     if (taken[k]) continue;
     MomentSum sum;
     if (sum_neighborhood(nodes, k, search.neighborhood_m, taken, sum) < kMinNeighbors) continue;
-    const PrincipalAxis axis = principal_axis(sum.covariance());
+    const Eigen::Vector3d eye_m = nodes[k].eye_sum_m / nodes.weight(k);
+    const PrincipalAxis axis = principal_axis(sharp_covariance(sum, eye_m, params.max_noise_share));
     if (!axis.is_linear(params.seed_linearity)) continue;
     const double dz = std::abs(axis.direction.z());
     const bool upright = dz > params.upright_min_dz;

@@ -23,7 +23,8 @@ class ChainGrowth {
     double along_m = 0.0;
     int node = 0;
   };
-  void collect_near_line(const BarNodes& nodes, const Bar& bar, double half_height_m, bool upright);
+  void follow_noise(double half_height_m, Bar& bar) const;
+  void collect_near_line(const BarNodes& nodes, const Bar& bar, bool upright);
   void keep_chain();
 
   BarParams params_;

@@ -40,9 +40,53 @@ Spacing fit_spacing(std::vector<double>& heights_m, const LadderTestParams& para
   return {static_cast<int>(n), skh / skk, std::sqrt(std::max(residual_m2, least_m2) / skk)};
 }
 
+namespace {
+
+bool stands_at_a_place(double height_m, double sag_m, double spacing_m,
+                       const LadderTestParams& params) {
+  const double number = std::floor(height_m / spacing_m + 0.5);
+  const double below_m = number * spacing_m - height_m;
+  const double tolerance_m = params.spacing_tolerance * spacing_m;
+  return below_m >= -tolerance_m && below_m <= tolerance_m + sag_m;
+}
+
+/// The place is none of a sound rung's: those are 0 and `steps` here.
+bool is_between_others(double height_m, double spacing_m, double steps) {
+  const double number = std::floor(height_m / spacing_m + 0.5);
+  return number != 0.0 && number != steps;
+}
+
+}  // namespace
+
+Spacing fit_spacing_beside(const std::vector<double>& heights_m,
+                           const std::vector<DamagedHeight>& damaged,
+                           const LadderTestParams& params) {
+  if (heights_m.size() != 2) return {};
+  const double low_m = std::min(heights_m[0], heights_m[1]);
+  const double distance_m = std::max(heights_m[0], heights_m[1]) - low_m;
+  constexpr int kMaxSteps = 3;
+  for (int steps = 1; steps <= kMaxSteps; ++steps) {
+    const double spacing_m = distance_m / steps;
+    if (spacing_m < params.min_spacing_m || spacing_m > params.max_spacing_m) continue;
+    const auto fits = [&](double end_m, double sag_m) {
+      return stands_at_a_place(end_m - low_m, sag_m, spacing_m, params) &&
+             is_between_others(end_m - low_m, spacing_m, steps);
+    };
+    const auto num_fitting = std::count_if(damaged.begin(), damaged.end(), [&](const auto& bar) {
+      return fits(bar.end0_m, bar.sag_m) || fits(bar.end1_m, bar.sag_m);
+    });
+    if (num_fitting == 0) continue;
+    // Of a difference of two heights.
+    const double sigma_m = params.height_sigma_m * std::sqrt(2.0) / steps;
+    return {2 + static_cast<int>(num_fitting), spacing_m, sigma_m};
+  }
+  return {};
+}
+
 LadderConfirmation::LadderConfirmation(const LadderParams& params) : params_(params) {
   rails_.reserve(2);
   heights_m_.reserve(params.max_tracks);
+  damaged_.reserve(params.max_tracks);
 }
 
 void LadderConfirmation::reset() {
@@ -106,16 +150,36 @@ void LadderConfirmation::follow_rails(const Detections& found) {
   }
 }
 
+// A bent rung does not stand at its proper height, nor does one of which the view's edge leaves a
+// part; a stub does.
+bool LadderConfirmation::tells_height(const BarTrack& track, double radius_m) const {
+  const unsigned damage = track.flags(params_.measure) & (kFlagBent | kFlagSagged | kFlagTilted);
+  const double off_m = std::abs(track.bar.radius_m - radius_m);
+  return damage == 0 && off_m <= params_.measure.radius_alike * radius_m;
+}
+
 Spacing LadderConfirmation::measure(const std::vector<BarTrack>& tracks) {
   heights_m_.clear();
+  damaged_.clear();
   if (rails_.empty()) return {};
+  double radius_m = 0.0;  // of the heaviest
+  double weight = 0.0;
+  for (const BarTrack& track : tracks) {
+    if (!track.is_proven || track.bar.weight <= weight) continue;
+    weight = track.bar.weight;
+    radius_m = track.bar.radius_m;
+  }
   const Axis& left = rails_[0].axis;
   for (const BarTrack& track : tracks) {
-    // A bent rung does not stand at its proper height; a stub does.
-    const unsigned damage = track.flags(params_.measure) & (kFlagBent | kFlagSagged | kFlagTilted);
-    if (!track.is_proven || damage != 0) continue;
-    heights_m_.push_back(left.along(track.bar.middle_m()));
+    if (!track.is_proven) continue;
+    if (tells_height(track, radius_m)) {
+      heights_m_.push_back(left.along(track.bar.middle_m()));
+    } else {
+      damaged_.push_back(
+          {left.along(track.bar.end0_m), left.along(track.bar.end1_m), track.bar.sag_m});
+    }
   }
+  if (heights_m_.size() == 2) return fit_spacing_beside(heights_m_, damaged_, params_.test);
   return fit_spacing(heights_m_, params_.test);
 }
 

@@ -20,6 +20,19 @@ struct Spacing {
 /// stand at whole multiples of one distance.
 Spacing fit_spacing(std::vector<double>& heights_m, const LadderTestParams& params);
 
+/// A bent or tilted rung: both its ends stand this high, and its middle hangs so far below them.
+struct DamagedHeight {
+  double end0_m = 0.0;
+  double end1_m = 0.0;
+  double sag_m = 0.0;
+};
+
+/// Of two sound rungs, where a damaged one makes the third: with one of its ends, or as far below
+/// as it sags, it stands where a rung belongs. The sound ones alone tell the distance.
+Spacing fit_spacing_beside(const std::vector<double>& heights_m,
+                           const std::vector<DamagedHeight>& damaged,
+                           const LadderTestParams& params);
+
 class LadderConfirmation {
  public:
   explicit LadderConfirmation(const LadderParams& params);
@@ -33,6 +46,7 @@ class LadderConfirmation {
 
  private:
   void follow_rails(const Detections& found);
+  bool tells_height(const BarTrack& track, double radius_m) const;
   Spacing measure(const std::vector<BarTrack>& tracks);
 
   LadderParams params_;
@@ -40,6 +54,7 @@ class LadderConfirmation {
   Spacing spacing_;
   std::vector<MeasuredRail> rails_;
   std::vector<double> heights_m_;
+  std::vector<DamagedHeight> damaged_;
   int num_rail_frames_ = 0;
 };
 

@@ -113,6 +113,8 @@ int LadderTest::num_regular_steps(bool whole_only) {
     const double step_m = heights_m_[i] - heights_m_[i - 1];
     if (step_m > params_.min_joint_distance_m) spacing_m = std::min(spacing_m, step_m);
   }
+  // Where the one between two of them is missing, they are two spacings apart.
+  if (spacing_m >= params_.frame_max_spacing_m) spacing_m *= 0.5;
   if (spacing_m <= params_.frame_min_spacing_m || spacing_m >= params_.frame_max_spacing_m)
     return 0;
   int count = 0;
@@ -125,8 +127,10 @@ int LadderTest::num_regular_steps(bool whole_only) {
 }
 
 double LadderTest::hole_ratio(const BarNodes& nodes, const BarSet& bars) const {
-  const Axis& left = bars.rails[best_.left].axis;
-  const Eigen::Vector3d across = left.across(bars.rails[best_.right].axis.origin_m);
+  const Bar& left_rail = bars.rails[best_.left];
+  const Bar& right_rail = bars.rails[best_.right];
+  const Axis& left = left_rail.axis;
+  const Eigen::Vector3d across = left.across(right_rail.axis.origin_m);
   const double width_m = std::sqrt(across.squaredNorm());
   const Eigen::Vector3d to_right = across / width_m;
   const Eigen::Vector3d normal = left.direction.cross(to_right);
@@ -148,12 +152,16 @@ double LadderTest::hole_ratio(const BarNodes& nodes, const BarSet& bars) const {
     if (t < low_m || t > high_m) continue;
     if (u < params_.hole_rail_m || u > width_m - params_.hole_rail_m) continue;
     if (std::abs(w.dot(normal)) > params_.hole_depth_m) continue;
+    // Seen from the side, noise carries a rail's points into the panel.
+    const Eigen::Vector3d& p = nodes.position_m(k);
+    const double rail_m = std::min(left_rail.distance_m(p), right_rail.distance_m(p));
+    if (rail_m < params_.hole_rail_m) continue;
     double rung_m = std::numeric_limits<double>::max();
     for (const Joint& x : best_.joints) {
       const Bar& bar = bars.rungs[x.bar];
-      const double s = bar.axis.along(nodes.position_m(k));
+      const double s = bar.axis.along(p);
       if (s < bar.from_m - kBeyondEnd_m || s > bar.to_m + kBeyondEnd_m) continue;
-      rung_m = std::min(rung_m, bar.axis.distance(nodes.position_m(k)));
+      rung_m = std::min(rung_m, bar.distance_m(p));
     }
     if (rung_m < params_.on_rung_m) on_rungs += nodes.weight(k);
     if (rung_m > params_.hole_rung_m) in_panel += nodes.weight(k);

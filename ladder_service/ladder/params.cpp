@@ -54,6 +54,8 @@ std::string check_bar(const BarParams& p) {
       Relation{in(0.0, p.level_max_dz, 1.0), "bar.level_max_dz must be in 0..1"},
       Relation{in(p.level_max_dz, p.upright_min_dz, 1.0),
                "bar.upright_min_dz must be in level_max_dz..1"},
+      Relation{in(0.0, p.noise_sigmas, 10.0), "bar.noise_sigmas must be in 0..10"},
+      Relation{in(0.0, p.max_noise_share, 0.1), "bar.max_noise_share must be in 0..0.1"},
       Relation{in(0.001, p.gap_m, 10.0), "bar.gap_m must be in 0.001..10"},
       Relation{p.num_refits >= 1 && p.num_refits <= 100, "bar.num_refits must be in 1..100"},
       Relation{in(0.01, p.reach_m, 100.0), "bar.reach_m must be in 0.01..100"},

@@ -18,11 +18,13 @@ struct BarParams {
   double narrow_neighborhood_m = 0.06;  ///< radius of the local PCA (recipe)
   double wide_half_height_m = 0.05;     ///< 70-100 mm boards (recipe)
   double wide_neighborhood_m = 0.12;    ///< (recipe)
-  double wide_gain = 1.3;               ///< weight within twice / once the narrow half height that
+  double wide_gain = 1.2;               ///< weight within twice / once the narrow half height that
                                         ///< makes the height doubtful (own)
   double seed_linearity = 3.0;      ///< least ratio of the first two variances of a seed (recipe)
   double level_max_dz = 0.42;       ///< |d_z| below: rung (recipe)
   double upright_min_dz = 0.80;     ///< |d_z| above: rail; 0.87 at 60 deg (own)
+  double noise_sigmas = 2.0;        ///< members lie so far from the axis along the view (own) ...
+  double max_noise_share = 0.02;    ///< ... with at most this noise, of the range (quality)
   double gap_m = 0.08;              ///< a chain ends at a longer gap (recipe)
   int num_refits = 4;               ///< growth and fit alternate so often (recipe)
   double reach_m = 1.5;             ///< a rung candidate ends this far from its seed (own)
@@ -72,7 +74,8 @@ struct LadderTestParams {
   double hole_rail_m = 0.06;    ///< panel begins this far from a rail's axis (recipe)
   double hole_rung_m = 0.05;    ///< ... and from a rung's axis (recipe)
   double on_rung_m = 0.045;     ///< (recipe)
-  double hole_depth_m = 0.06;   ///< half thickness of the panel (recipe)
+  double hole_depth_m = 0.045;  ///< half thickness of the panel: what stands 60 mm behind is a
+                                ///< pipe, no front (own; recipe 60 mm)
   double hole_margin_m = 0.05;  ///< panel above the top and below the lowest rung (recipe)
   // Depth test: a shelf board goes on behind its edge.
   double deep_max = 0.3;             ///< median weight behind / own weight (recipe)
@@ -179,7 +182,8 @@ struct AffordanceParams {
   double outlier_reach_m = 0.05;  ///< a foreign node this near to the axis is attached to it (own)
   double outlier_min_weight = 3.0;  ///< ... when it holds so many points (own)
   double seen_reach_m = 0.015;      ///< a node supports its own extent and this much beyond (own)
-  double max_tilt_sin = 0.2588;     ///< sin 15 deg: no offer on a more tilted rung (quality)
+  double max_tilt_sin = 0.2250;     ///< sin 13 deg: no offer on a rung tilted by 15 deg (quality),
+                                    ///< two of which the direction may err by
   double max_length_m = 1.5;        ///< samples per rung are bounded by max_length / step (own)
 };
 

@@ -127,6 +127,63 @@ TEST(Spacing, ErrorGrowsWithIrregularity) {
   EXPECT_GT(ladder::fit_spacing(uneven, {}).sigma_m, 0.005);
 }
 
+// A damaged rung makes a third of two sound ones where one of its ends, or its place above what it
+// sags, is a rung's: next to them, or between two that are two steps apart. The distance is theirs.
+TEST(Spacing, TakesADamagedRungForTheThird) {
+  const std::vector<double> next = {0.0, 0.30}, apart = {0.6, 0.0};
+  const ladder::Spacing above = ladder::fit_spacing_beside(next, {{0.59, 0.52, 0.0}}, {});
+  EXPECT_EQ(above.num_rungs, 3);
+  EXPECT_NEAR(above.spacing_m, 0.30, 1e-12);
+  EXPECT_NEAR(above.sigma_m, 0.0028, 1e-4);
+  const ladder::Spacing between = ladder::fit_spacing_beside(apart, {{0.20, 0.22, 0.03}}, {});
+  EXPECT_EQ(between.num_rungs, 3);
+  EXPECT_NEAR(between.spacing_m, 0.30, 1e-12);
+}
+
+// No two sound rungs, none damaged, or one that stands at no rung's place or at a sound one's own,
+// give no spacing; neither do steps that no ladder has.
+TEST(Spacing, TakesNoOtherBarForAThird) {
+  const std::vector<double> none, one = {0.3}, two = {0.0, 0.30}, three = {0.0, 0.3, 0.6};
+  const std::vector<ladder::DamagedHeight> fitting = {{0.6, 0.6, 0.0}};
+  EXPECT_EQ(ladder::fit_spacing_beside(none, fitting, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside(one, fitting, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside(three, fitting, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside(two, {}, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside(two, {{0.45, 0.45, 0.01}}, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside(two, {{0.30, 0.20, 0.0}}, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside({0.3, 0.3}, fitting, {}).num_rungs, 0);
+  EXPECT_EQ(ladder::fit_spacing_beside({0.0, 0.19}, {{0.38, 0.38, 0.0}}, {}).num_rungs, 0);
+}
+
+// A rung of which the view's edge shows a part does not spoil the spacing of the whole ones.
+TEST(LadderConfirmation, LeavesOutARungThatTheViewCuts) {
+  ladder::Detections found;
+  found.is_ladder = true;
+  for (const double y_m : {0.2, -0.2}) {
+    found.rails.push_back({{{1.0, y_m, 0.0}, Eigen::Vector3d::UnitZ()}, -1.0, 1.0, 0.01});
+  }
+  std::vector<ladder::BarTrack> tracks;
+  const auto add = [&tracks](double z_m, double radius_m, double weight) {
+    ladder::BarTrack track;
+    track.id = static_cast<int>(tracks.size()) + 1;
+    track.is_proven = true;
+    track.bar.end0_m = {1.0, 0.2, z_m};
+    track.bar.end1_m = {1.0, -0.2, z_m};
+    track.bar.radius_m = radius_m;
+    track.bar.weight = weight;
+    tracks.push_back(track);
+  };
+  for (const double z_m : {-0.3, 0.0, 0.3}) add(z_m, 0.05, 4000.0);
+  add(0.565, 0.02, 1000.0);
+  ladder::LadderConfirmation confirmation{ladder::LadderParams{}};
+  EXPECT_EQ(confirmation.update(found, tracks), ladder::LadderState::kConfirmed);
+  EXPECT_NEAR(confirmation.spacing().spacing_m, 0.30, 1e-9);
+  // A whole one that stands there does.
+  tracks.back().bar.radius_m = 0.05;
+  confirmation.reset();
+  EXPECT_NE(confirmation.update(found, tracks), ladder::LadderState::kConfirmed);
+}
+
 // Only nodes off every plane with enough points are taken, in order of height, the heaviest first
 // when there are too many.
 TEST(BarNodes, TakesOffPlaneNodesByHeight) {
