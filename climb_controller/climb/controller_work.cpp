@@ -13,6 +13,12 @@ namespace {
 
 constexpr FaultFlags kFalls = flag(Fault::kFreeFall) | flag(Fault::kTooFewGrasps);
 
+PerAxis<double> measured_rad(const ControllerInput& input) {
+  PerAxis<double> angles_rad;
+  for (int axis = 0; axis < kNumAxes; ++axis) angles_rad[axis] = input.axes[axis].position_rad;
+  return angles_rad;
+}
+
 }  // namespace
 
 void Controller::work(const ControllerInput& input) {
@@ -35,10 +41,13 @@ void Controller::boot(const ControllerInput& input) {
 
 void Controller::work_arming(const ControllerInput& input) {
   if (!following_) {
-    if (input.drives_enabled)
-      start_following(input);
-    else if (in_state_s_ > params_.enable_timeout_s)
+    // Before drives are enabled, too: their first targets are where they stand.
+    verdict_ = gate_.start_at(measured_rad(input));
+    const bool is_late = !input.drives_enabled && in_state_s_ > params_.enable_timeout_s;
+    if (is_late || !verdict_.passed())
       take(E::kArmingRefused);
+    else if (input.drives_enabled)
+      start_following(input);
     return;
   }
   if (!params_.on_ladder) {  // where it stands
@@ -104,13 +113,6 @@ std::optional<Leg> Controller::next_to_grasp() const {
 }
 
 void Controller::start_following(const ControllerInput& input) {
-  PerAxis<double> measured_rad;
-  for (int axis = 0; axis < kNumAxes; ++axis) measured_rad[axis] = input.axes[axis].position_rad;
-  verdict_ = gate_.start_at(measured_rad);
-  if (!verdict_.passed()) {
-    take(E::kArmingRefused);
-    return;
-  }
   const PerLeg<Hold> holds = claws_round_rungs();
   const auto num_closed = kNumLegs - std::count(holds.begin(), holds.end(), Hold::kNone);
   const auto num_confirmed = std::count(holds.begin(), holds.end(), Hold::kConfirmed);

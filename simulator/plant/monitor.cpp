@@ -121,7 +121,7 @@ void Monitor::on_target(const CarriedFrame& carried, int axis_index) {
     const bool first = !axis.enabled;
     if (first && !axis.has_measured) {
       violate(now_us, 6, axis_index, "enabled before any measured position");
-    } else if (first && std::abs(target - axis.measured) > kSameCounts) {
+    } else if (first && !is_at_measured(axis, target)) {
       violate(now_us, 6, axis_index,
               text_of("first target %d, measured %d", target, axis.measured));
     }
@@ -134,17 +134,26 @@ void Monitor::on_target(const CarriedFrame& carried, int axis_index) {
   axis.has_target = true;
 }
 
+bool Monitor::is_at_measured(const Axis& axis, std::int32_t target) {
+  return axis.has_measured && std::abs(target - axis.measured) <= kSameCounts;
+}
+
 void Monitor::check_limits(std::int64_t now_us, int axis_index, std::int32_t target) {
   const Axis& axis = axes_[static_cast<std::size_t>(axis_index)];
   const AxisRules& rule = params_.rules[static_cast<std::size_t>(axis_index)];
   const double scale = params_.drives[static_cast<std::size_t>(axis_index)].counts_per_rad;
   const double slack_rad = 1.0 / scale;
   const double angle = angle_rad(axis_index, target);
-  if (!(angle >= rule.min_rad - slack_rad && angle <= rule.max_rad + slack_rad)) {
+  // An axis that stands outside is enabled where it stands (I6) and may be led inwards.
+  const double last = angle_rad(axis_index, axis.enabled ? axis.target : axis.measured);
+  const double low = std::min(rule.min_rad, last) - slack_rad;
+  const double high = std::max(rule.max_rad, last) + slack_rad;
+  if (!(angle >= low && angle <= high)) {
     violate(now_us, 2, axis_index,
             text_of("target %.5f rad outside %.3f..%.3f", angle, rule.min_rad, rule.max_rad));
   }
-  if (!axis.enabled) return;
+  // To where it stands is no jump: what runs away is let go.
+  if (!axis.enabled || is_at_measured(axis, target)) return;
   const double change = std::fabs(static_cast<double>(target) - axis.target);
   const double allowed =
       rule.max_velocity_rad_s * 1e-6 * static_cast<double>(params_.cycle_us) * scale + 1.0;
@@ -165,8 +174,7 @@ void Monitor::check_stop(std::int64_t now_us, int axis_index, std::int32_t targe
   }
   const int sign = params_.drives[static_cast<std::size_t>(axis_index)].sign;
   if (is_jaw(axis_index) && sign * change <= 0) return;
-  const bool follows = axis.has_measured && std::abs(target - axis.measured) <= kSameCounts;
-  if (follows) return;
+  if (is_at_measured(axis, target)) return;
   const std::int64_t since_us = now_us - *stop_since_us_ - params_.stop_reaction_us;
   const std::int32_t allowed = since_us > params_.stop_run_out_us ? 1 : axis.stop_speed + 1;
   if (std::abs(change) <= allowed) return;

@@ -5,7 +5,9 @@
 //  I1 off the dock no confirmed grasp is opened unless the three others are confirmed; at least
 //  three
 //     are when the dock is released. Grasps that the plant took away lately are excused.
-//  I2 every enabled target lies in its limits and changes by at most v_max T.
+//  I2 every enabled target lies in its limits, or between them and where the axis stood outside
+//  when
+//     it was enabled, and changes by at most v_max T, or to where the axis stands.
 //  I3 a jaw is commanded open on a held rung only if the others were confirmed within 50 ms.
 //  I4 after a stop trigger and its reaction time targets only run out: never faster than before,
 //     standing after 150 ms, unless they follow what is measured. Closing jaws are excused.
@@ -125,6 +127,7 @@ class Monitor {
   int num_confirmed_others(int leg, std::int64_t since_us) const;
   bool plant_took_lately(std::int64_t now_us) const;
   double angle_rad(int axis, std::int32_t counts) const;
+  static bool is_at_measured(const Axis& axis, std::int32_t target);
   void violate(std::int64_t now_us, int invariant, int place, std::string text);
 
   MonitorParams params_;

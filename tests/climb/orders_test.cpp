@@ -190,6 +190,26 @@ TEST_F(OrdersTest, ArmingCanBeEnded) {
   EXPECT_FALSE(output_.send);
 }
 
+// A joint that stands farther outside its limits than a start may be, or nowhere: no drive is
+// enabled, and the axis is told. A little outside it is armed, and led back inwards.
+TEST_F(OrdersTest, ArmsOnlyWhereItsJointsMayStand) {
+  const int axis = axis_of(kRearLeft, 1);
+  const AxisLimits limits = axis_limits(params().climb.robot)[axis];
+  ASSERT_TRUE(reach(S::kDisarmed, 1.0));
+  const double slack_rad = params().gate.max_start_error_rad;
+  for (const double bad_rad : {limits.max_rad + slack_rad + 0.001,
+                               limits.min_rad - slack_rad - 0.001, climb_tests::kNan}) {
+    stand_.input.axes[axis].position_rad = bad_rad;
+    order(Order::kArm);
+    EXPECT_EQ(output_.state, S::kDisarmed) << bad_rad;
+    EXPECT_NE(output_.drives, DriveRequest::kEnable) << bad_rad;
+    EXPECT_EQ(output_.gate.axis, axis) << bad_rad;
+  }
+  stand_.input.axes[axis].position_rad = limits.max_rad + 0.5 * slack_rad;
+  order(Order::kArm);
+  EXPECT_EQ(output_.drives, DriveRequest::kEnable) << where();
+}
+
 // Drives that leave the enabled state by themselves are a fault, whatever the bus says of it.
 TEST_F(OrdersTest, DrivesThatDropOutAreAFault) {
   climb_to(LimbState::kTransit);

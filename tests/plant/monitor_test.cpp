@@ -154,6 +154,52 @@ TEST(Monitor, SeesLimitsAndJumps) {
   EXPECT_THAT(far.broken(), ElementsAre(2)) << far.first();
 }
 
+/// The rules of one axis are other ones from now on.
+Monitor with_rule(const WatchedBench& run, int axis, const AxisRules& rule) {
+  MonitorParams params{gripping_params()};
+  params.rules[static_cast<std::size_t>(axis)] = rule;
+  Monitor monitor(params);
+  monitor.on_session(run.bench.now_us, SessionEvent::kArmed);
+  return monitor;
+}
+
+// An axis that stands outside its limits may be enabled there and led inwards, not outwards (I2).
+TEST(Monitor, LetsAnAxisLeaveWhereItStandsOutside) {
+  for (const double by_rad : {-0.02, 0.02}) {
+    WatchedBench run;
+    const double measured_rad = run.bench.plant.drive(1).measured_rad();
+    run.watch();
+    run.monitor = with_rule(run, 1, {measured_rad - 1.0, measured_rad - 0.03, 2.5});
+    run.bench.configure();
+    for (const int word : {0x06, 0x07, 0x0F, 0x0F}) run.cycles(1, word);
+    EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+    run.bench.goal_rad[1] += by_rad;
+    run.cycles(5);
+    if (by_rad < 0.0) {
+      EXPECT_THAT(run.broken(), IsEmpty()) << run.first();
+    } else {
+      EXPECT_THAT(run.broken(), ElementsAre(2)) << run.first();
+    }
+  }
+}
+
+// To where the axis stands is no jump, as far elsewhere is one (I2).
+TEST(Monitor, LetsATargetGoToWhereTheAxisStands) {
+  for (const double part : {1.0, -1.0}) {
+    WatchedBench run;
+    run.start();
+    run.bench.plant.drive(1).motor().stuck = true;
+    run.bench.goal_rad[1] += 0.1;
+    run.cycles(6);
+    ASSERT_THAT(run.broken(), IsEmpty()) << run.first();
+    const double off_rad = run.bench.plant.drive(1).measured_rad() - run.bench.target_rad[1];
+    ASSERT_GT(std::abs(off_rad), 0.05);
+    run.bench.goal_rad[1] = run.bench.target_rad[1] += part * off_rad;
+    run.cycles(1);
+    EXPECT_EQ(run.broken().count(2), part > 0.0 ? 0U : 1U) << run.first();
+  }
+}
+
 // Targets that run on after the E-stop's reaction time are seen (I4); targets that freeze are not.
 TEST(Monitor, SeesMotionAfterStop) {
   for (const bool obeys : {false, true}) {
