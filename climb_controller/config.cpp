@@ -81,6 +81,7 @@ void read(ConfigTable table, climb::MotionParams& p) {
   table.read("approach_m_s", p.approach_m_s);
   table.read("cartesian_m_s2", p.cartesian_m_s2);
   table.read("pull_test_m", p.pull_test_m);
+  table.read("clear_m", p.clear_m);
   table.read("pull_further_m", p.pull_further_m);
   table.read("prove_further_m", p.prove_further_m);
   table.read("pull_test_max_slip_m", p.pull_test_max_slip_m);
@@ -129,6 +130,7 @@ void read(ConfigTable table, climb::GraspChoiceParams& p) {
   table.read("max_lateral_m", p.max_lateral_m);
   table.read("min_step_m", p.min_step_m);
   table.read("max_step_m", p.max_step_m);
+  table.read("max_long_step_m", p.max_long_step_m);
   table.read("min_joint_margin_rad", p.min_joint_margin_rad);
   table.read("min_sigma_J_m", p.min_sigma_J_m);
   table.read("same_rung_m", p.same_rung_m);

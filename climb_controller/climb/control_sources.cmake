@@ -10,6 +10,7 @@ set(climb_control_sources
     controller_work.cpp
     failsafe.cpp
     fault_watch.cpp
+    step_over.cpp
     step_planner.cpp
     grasp_confirmation.cpp
     limb_cycle.cpp

@@ -149,6 +149,7 @@ bool Controller::obey_climb(bool upwards) {
   if (finishes && upwards != upwards_) return false;
   if (!take(E::kClimb)) return false;
   upwards_ = upwards;
+  if (!finishes) planner_.forget_vain();
   ending_ = ahead == Reaction::kNothing ? Ending::kNone : Ending::kNow;
   return true;
 }

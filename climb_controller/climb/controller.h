@@ -127,14 +127,16 @@ class Controller {
   bool is_new_ = true;  ///< never armed: where the robot is, its claws tell
   bool upwards_ = true;
   Ending ending_ = Ending::kNone;
-  int num_shifts_ = 0;         ///< before the step that is next
-  int num_steps_to_rest_ = 0;  ///< since HOLD was ordered
-  double looked_s_ = 0.0;      ///< standing, for a rung that could be trusted
-  bool was_top_ = false;       ///< ... and seen to be at the top all that time
-  bool stepping_ = false;      ///< a limb of the crawl is on its way
-  bool withdrawn_ = false;     ///< its target is gone
-  bool following_ = false;     ///< targets are sent
-  bool began_now_ = false;     ///< to follow, in this cycle: the first targets are as measured
+  int num_shifts_ = 0;          ///< before the step that is next
+  int num_steps_to_rest_ = 0;   ///< since HOLD was ordered
+  double looked_s_ = 0.0;       ///< standing, for a rung that could be trusted
+  bool was_top_ = false;        ///< ... and seen to be at the top all that time
+  bool stepping_ = false;       ///< a limb of the crawl is on its way
+  bool withdrawn_ = false;      ///< its target is gone
+  bool is_vain_ = false;        ///< ... or does not hold
+  bool may_step_over_ = false;  ///< what is no rung to grasp, after looking at it for a while
+  bool following_ = false;      ///< targets are sent
+  bool began_now_ = false;      ///< to follow, in this cycle: the first targets are as measured
   bool rests_safely_ = false;
   Eigen::Isometry3d T_odom_body_before_ = Eigen::Isometry3d::Identity();  ///< lifting or opening
   std::optional<Leg> putting_down_;  ///< in FAULT_HOLD, after a stance was lost

@@ -162,7 +162,10 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) {
     const bool may_shift = num_shifts_ < params_.max_shifts;
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
+    const auto step_over = [&] { return planner_.over(plan_, may_shift, now, ladder_of(input)); };
+    if (looked_s_ <= 0.0) may_step_over_ = !plan_.ready && step_over().ready;
     if (looks_again()) return;
+    if (!plan_.ready && may_step_over_) plan_ = step_over();
     ends = !plan_.ready && !plan_.at_dock;
   }
   if (!ends && !plan_.move.is_none()) {
@@ -175,7 +178,7 @@ void Controller::work_climbing(const ControllerInput& input) {
   } else if (!ends && is_stance_firm() && limbs_[plan_.leg].begin(plan_.goal)) {
     T_odom_body_before_ = now.pose.T_odom_body();
     stepping_ = true;
-    withdrawn_ = false;
+    withdrawn_ = is_vain_ = false;
   }
   if (!ends) return;
   rests_safely_ = planner_.rests_safely(now);
@@ -188,8 +191,8 @@ bool Controller::looks_again() {
   // all that time.
   const bool may_pass = plan_.at_top || plan_.refusal == Refusal::kNotTrusted ||
                         plan_.refusal == Refusal::kLowConfidence ||
-                        plan_.refusal == Refusal::kUncertain ||
-                        plan_.refusal == Refusal::kNoStretch;
+                        plan_.refusal == Refusal::kUncertain || plan_.refusal == Refusal::kRadius ||
+                        plan_.refusal == Refusal::kNoStretch || may_step_over_;
   if (plan_.ready || !may_pass) {
     looked_s_ = 0.0;
     return false;
@@ -230,6 +233,8 @@ bool Controller::end_step(const ControllerInput& input) {
     const PlannedStep once_more =
         planner_.next(upwards_, false, robot_now(input), ladder_of(input));
     if (once_more.refusal != Refusal::kNone) plan_.refusal = once_more.refusal;
+    // The rung that was tried is left out, where the next one is within reach.
+    return is_vain_ && planner_.over(plan_, true, robot_now(input), ladder_of(input)).ready;
   }
   return made;
 }
@@ -257,6 +262,10 @@ void Controller::search(Leg leg, const ControllerInput& input) {
     if (!other_rung && !is_first_place) continue;
     const PlannedStep elsewhere = planner_.again(retry, now, ladder_of(input));
     if (elsewhere.ready) return limb.retarget(elsewhere.goal);
+  }
+  if (state_ == S::kClimbing) {
+    planner_.remember_vain(retry.tried_m);
+    is_vain_ = true;
   }
   limb.give_up();
 }

@@ -144,6 +144,7 @@ Refusal GraspChoice::judge(const LadderView& ladder, int rung_index, const Grasp
   double joint_margin_rad = std::numeric_limits<double>::infinity();
   if (refusal == Refusal::kNone) refusal = judge_reach(query, target, joint_margin_rad);
   if (refusal == Refusal::kNone) target.cost_m = cost_m(rung, query, target, joint_margin_rad);
+  target.joint_margin_rad = joint_margin_rad;
   return refusal;
 }
 
@@ -155,6 +156,15 @@ double GraspChoice::step_to_m(const RungView& rung, const GraspQuery& query) {
 bool GraspChoice::is_within_step(const RungView& rung, const GraspQuery& query) const {
   const double step = step_to_m(rung, query);
   return step >= params_.min_step_m && step <= params_.max_step_m;
+}
+
+bool GraspChoice::is_vain(const RungView& rung, const GraspQuery& query) const {
+  const Eigen::Vector3d axis = (rung.end1_m - rung.end0_m).normalized();
+  for (const Eigen::Vector3d& vain_m : query.vain_m) {
+    const Eigen::Vector3d off_m = vain_m - rung.end0_m;
+    if ((off_m - off_m.dot(axis) * axis).norm() <= params_.same_rung_m) return true;
+  }
+  return false;
 }
 
 bool GraspChoice::lacks_rung(const LadderView& ladder, const GraspQuery& query) const {
@@ -172,7 +182,8 @@ Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,
                                 GraspTarget& target) const {
   if (!finite(rung)) return Refusal::kNotFinite;
   const bool is_other = query.only_rung_id >= 0 && rung.id != query.only_rung_id;
-  if (rung.id == query.avoid_rung_id || is_other) return Refusal::kAvoided;
+  const bool is_avoided = rung.id == query.avoid_rung_id || is_vain(rung, query);
+  if (is_avoided || is_other) return Refusal::kAvoided;
   if (!rung.trusted) return Refusal::kNotTrusted;
   if (rung.damaged) return Refusal::kDamaged;
   if (!(rung.confidence >= params_.min_confidence)) return Refusal::kLowConfidence;
@@ -189,7 +200,7 @@ Refusal GraspChoice::judge_rung(const RungView& rung, const GraspQuery& query,
 
   const double step = step_to_m(rung, query);
   if (!(step >= params_.min_step_m)) return Refusal::kNotAhead;
-  return step <= params_.max_step_m ? Refusal::kNone : Refusal::kTooFarAhead;
+  return step <= longest_step_m(query) ? Refusal::kNone : Refusal::kTooFarAhead;
 }
 
 Refusal GraspChoice::place(const LadderView& ladder, int rung_index, const GraspQuery& query,

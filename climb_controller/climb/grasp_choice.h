@@ -61,6 +61,8 @@ struct GraspQuery {
   int avoid_rung_id = -1;                            ///< tried in vain
   int only_rung_id = -1;                             ///< no other is looked at
   std::optional<Eigen::Vector3d> avoid_m;            ///< odom; nothing nearer than retry_distance_m
+  bool is_long = false;                              ///< a rung on the way may be left out
+  std::span<const Eigen::Vector3d> vain_m;           ///< odom; the rungs there do not hold
 };
 
 enum class Refusal : std::uint8_t {
@@ -99,6 +101,7 @@ struct GraspTarget {
   Eigen::Vector3d rung_axis = Eigen::Vector3d::UnitY();  ///< odom, unit, to the robot's left
   double radius_m = 0.0;                                 ///< of the rung
   double sigma_m = 0.0;
+  double joint_margin_rad = 0.0;  ///< least on the way
   double cost_m = 0.0;
 };
 
@@ -128,7 +131,11 @@ class GraspChoice {
                 GraspTarget& target) const;
   /// Along the ladder, from where the leg is, in the way it goes.
   static double step_to_m(const RungView& rung, const GraspQuery& query);
+  double longest_step_m(const GraspQuery& query) const {
+    return query.is_long ? params_.max_long_step_m : params_.max_step_m;
+  }
   bool is_within_step(const RungView& rung, const GraspQuery& query) const;
+  bool is_vain(const RungView& rung, const GraspQuery& query) const;
   bool lacks_rung(const LadderView& ladder, const GraspQuery& query) const;
   Refusal judge_rung(const RungView& rung, const GraspQuery& query, GraspTarget& target) const;
   Refusal place(const LadderView& ladder, int rung_index, const GraspQuery& query,

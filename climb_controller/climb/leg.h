@@ -36,6 +36,11 @@ constexpr double lateral_sign(Leg leg) {
   return is_left(leg) ? 1.0 : -1.0;
 }
 
+/// The other one of its pair.
+constexpr Leg mate_of(Leg leg) {
+  return static_cast<Leg>(leg ^ 1);
+}
+
 constexpr const char* name(Leg leg) {
   constexpr std::array<const char*, kNumLegs> kNames = {"FL", "FR", "RL", "RR"};
   return kNames[static_cast<std::size_t>(leg)];

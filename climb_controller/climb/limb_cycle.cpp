@@ -40,6 +40,7 @@ void LimbCycle::reset(const LimbInput& measured, Hold hold) {
   proves_ = false;
   home_.reset();
   way_out_m_.reset();
+  way_past_m_.reset();
   num_tries_ = 0;
   num_places_ = 1;
   spent_s_ = in_state_s_ = waited_s_ = 0.0;
@@ -58,6 +59,7 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   moves_ = true;
   returned_ = false;
   way_out_m_.reset();
+  way_past_m_.reset();
   num_tries_ = 0;
   num_places_ = 1;
   spent_s_ = 0.0;
@@ -77,6 +79,7 @@ bool LimbCycle::prove() {
   moves_ = proves_ = true;
   returned_ = false;
   way_out_m_.reset();
+  way_past_m_.reset();
   num_tries_ = 0;
   num_places_ = 1;
   spent_s_ = 0.0;
@@ -124,6 +127,7 @@ void LimbCycle::enter(LimbState from) {
           foot_m + motion_.retract_m * kinematics_.retract_direction(leg_, target_.angles_rad),
           motion_.retract_m_s);
     case S::kTransit:
+      if (goal_.is_beyond) return go_past();
       return move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
     case S::kPregrasp:
       if (parks_ || from == S::kLoaded) return stand_free();
@@ -215,8 +219,7 @@ void LimbCycle::work(const LimbInput& input) {
       if (arrived) take(parks_ ? LimbEvent::kPark : LimbEvent::kDone);
       return;
     case S::kTransit:
-      if (arrived) take(LimbEvent::kDone);
-      return;
+      return work_transit(arrived);
     case S::kApproach:
       if (arrived)
         take(LimbEvent::kDone);
@@ -362,26 +365,6 @@ void LimbCycle::stay_home() {
   num_tries_ = 0;
   num_places_ = 1;
   spent_s_ = 0.0;
-}
-
-void LimbCycle::return_home(const LimbInput& input, bool arrived) {
-  if (input.stop) return;
-  switch (stage_) {
-    case Stage::kSlowing:
-      if (!clock_.stands()) return;
-      stage_ = Stage::kOut;
-      return move_foot(way_out_m_.value_or(kinematics_.foot_m(leg_, target_.angles_rad)),
-                       motion_.retract_m_s);
-    case Stage::kOut:
-      if (!arrived) return;
-      stay_home();
-      way_out_m_.reset();
-      stage_ = Stage::kOver;
-      return move_foot(goal_.pregrasp_m, motion_.transit_m_s);
-    case Stage::kOver:
-      if (arrived) take(LimbEvent::kDone);
-      return;
-  }
 }
 
 bool LimbCycle::must_stay_closed(const LimbInput& input) const {

@@ -25,6 +25,7 @@ struct LimbGoal {
   Eigen::Vector3d grasp_m = Eigen::Vector3d::Zero();
   double radius_m = 0.0;                            ///< of the rung; 0 = not known
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< of the rung, unit
+  bool is_beyond = false;  ///< a rung that may be there is passed on the way
 };
 
 /// The same place, told in another frame.
@@ -131,19 +132,21 @@ class LimbCycle {
   void close_jaw() { is_jaw_forced_ = true; }
 
  private:
-  enum class Stage : std::uint8_t { kSlowing, kOut, kOver };  ///< of a way in parts
+  enum class Stage : std::uint8_t { kSlowing, kOut, kPast, kOver };  ///< of a way in parts
 
   bool take(LimbEvent event);
   void enter(LimbState from);
   void work(const LimbInput& input);
   bool has_lost(const LimbInput& input) const;
   void work_release(const LimbInput& input, bool arrived);
+  void work_transit(bool arrived);
   void work_pregrasp(const LimbInput& input, bool arrived);
   void work_regrasp(const LimbInput& input);
   void finish_closing(const LimbInput& input);
   void pull(const LimbInput& input, bool arrived);
   double pull_slip_m(const LimbInput& input) const;  ///< of the foot, back from the ladder
   void finish_pull(const LimbInput& input);
+  void go_past();
   void return_home(const LimbInput& input, bool arrived);
   void keep_budget();
   void remember_home();
@@ -194,7 +197,8 @@ class LimbCycle {
   int num_tries_ = 0;      ///< at this place
   int num_places_ = 1;     ///< in this step
   Stage stage_ = Stage::kOver;
-  std::optional<Eigen::Vector3d> way_out_m_;  ///< where the approach began, while it is at a rung
+  std::optional<Eigen::Vector3d> way_out_m_;   ///< where the approach began, while it is at a rung
+  std::optional<Eigen::Vector3d> way_past_m_;  ///< clear of the rung that is passed
   int held_rung_id_ = -1;
   int lost_rung_id_ = -1;
   bool moves_ = false;

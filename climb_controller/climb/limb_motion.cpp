@@ -132,6 +132,7 @@ void LimbCycle::follow_body() {
   goal_ = moved(T_now_before, goal_);
   if (home_) home_ = moved(T_now_before, *home_);
   if (way_out_m_) way_out_m_ = T_now_before * *way_out_m_;
+  if (way_past_m_) way_past_m_ = T_now_before * *way_past_m_;
 }
 
 ExpectedRung LimbCycle::expected_rung(const LimbInput& input) const {
@@ -158,6 +159,48 @@ void LimbCycle::stand_free() {
   needs_proof_ = is_guess_ = false;
   target_.weight = 0.0;
   move_joints(target_.angles_rad, 0.0);
+}
+
+void LimbCycle::go_past() {
+  const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
+  way_past_m_ = 0.5 * (foot_m + aimed_m(goal_.pregrasp_m));
+  way_past_m_->z() += motion_.clear_m;
+  stage_ = Stage::kPast;
+  move_foot(*way_past_m_, motion_.transit_m_s);
+}
+
+void LimbCycle::work_transit(bool arrived) {
+  if (!arrived) return;
+  if (stage_ == Stage::kOver) {
+    take(LimbEvent::kDone);
+    return;
+  }
+  stage_ = Stage::kOver;
+  move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
+}
+
+void LimbCycle::return_home(const LimbInput& input, bool arrived) {
+  if (input.stop) return;
+  switch (stage_) {
+    case Stage::kSlowing:
+      if (!clock_.stands()) return;
+      stage_ = Stage::kOut;
+      return move_foot(way_out_m_.value_or(kinematics_.foot_m(leg_, target_.angles_rad)),
+                       motion_.retract_m_s);
+    case Stage::kOut:
+      if (!arrived) return;
+      stay_home();
+      way_out_m_.reset();
+      stage_ = way_past_m_ ? Stage::kPast : Stage::kOver;
+      return move_foot(way_past_m_.value_or(goal_.pregrasp_m), motion_.transit_m_s);
+    case Stage::kPast:
+      if (!arrived) return;
+      stage_ = Stage::kOver;
+      return move_foot(goal_.pregrasp_m, motion_.transit_m_s);
+    case Stage::kOver:
+      if (arrived) take(LimbEvent::kDone);
+      return;
+  }
 }
 
 void LimbCycle::yield(const LimbInput& input) {

@@ -77,6 +77,7 @@ struct MotionParams {
   double lateral_home_m = 0.15;   ///< |y| of a foot (run)
   double retract_m = 0.06;        ///< along the claw's opening axis (run)
   double retract_m_s = 0.20;      ///< (run)
+  double clear_m = 0.08;          ///< ... and so much farther where a rung is passed (run)
   double transit_m_s = 0.40;      ///< (run: 0.45 needs 2.26 rad/s)
   double pregrasp_m = 0.05;       ///< before the rung, along the claw's opening axis (run)
   double aim_up_m = 0.008;        ///< the claw comes so much too high: a finger is above (run)
@@ -137,6 +138,7 @@ struct GraspChoiceParams {
   double max_lateral_m = 0.06;        ///< from the leg's lateral home (own)
   double min_step_m = 0.15;           ///< a next rung is at least so far along the ladder (own)
   double max_step_m = 0.45;           ///< ... and at most (own)
+  double max_long_step_m = 0.70;      ///< over a rung that is missing, or none to grasp (own)
   double min_joint_margin_rad = 0.1;  ///< from every joint limit
   double min_sigma_J_m = 0.03;        ///< least singular value of the Jacobian [m/rad] (own)
   double same_rung_m = 0.07;          ///< a foot so near a rung is on it (own: half a least step)

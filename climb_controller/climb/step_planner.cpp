@@ -86,7 +86,7 @@ PlannedStep StepPlanner::dock(Leg leg, int avoid_rung_id, const RobotNow& now,
 
 PlannedStep StepPlanner::beside(const PlannedStep& refused, const RobotNow& now,
                                 const LadderView& ladder) {
-  const Leg other = static_cast<Leg>(refused.leg ^ 1);
+  const Leg other = mate_of(refused.leg);
   if (!is_confirmed(now.limbs[other])) return refused;
   GraspQuery query = query_of(refused.leg, true, now);
   const Eigen::Vector3d held_m = query.held[other].position_m;
@@ -219,16 +219,44 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
   const double ahead_m = body_shift_m(spacing_m(ladder), upwards);
   query.next_shift_m = ahead_m * query.T_odom_body.linear().col(0);
   BodyMove move;
-  if (may_shift) move = body_move(ahead_m, now);
+  if (may_shift) move = as_far_as_all_reach(body_move(ahead_m, now), now);
   query.T_odom_body = query.T_odom_body * move.pose();
   PlannedStep chosen = choose(query, now, ladder);
   chosen.move = move;
   return chosen;
 }
 
+BodyMove StepPlanner::as_far_as_all_reach(const BodyMove& move, const RobotNow& now) const {
+  for (const double part : {1.0, 0.8, 0.6, 0.4, 0.2}) {
+    BodyMove shorter = move;
+    shorter.shift_m *= part;
+    if (stance_after(shorter, now)) return shorter;
+  }
+  return {};
+}
+
+std::optional<Stance> StepPlanner::stance_after(const BodyMove& move, const RobotNow& now) const {
+  const Eigen::Isometry3d T_moved_body = move.pose().inverse();
+  Stance stance = now.stance;
+  stance.up_body = T_moved_body.linear() * now.stance.up_body;
+  for (const Leg leg : kLegs) {
+    const Eigen::Vector3d foot_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]);
+    const LegSolution solution = kinematics_.inverse(leg, T_moved_body * foot_m);
+    if (!solution.reachable()) return std::nullopt;
+    stance.angles_rad[leg] = solution.angles_rad;
+  }
+  return stance;
+}
+
+void StepPlanner::remember_vain(const Eigen::Vector3d& place_m) {
+  vain_m_[num_vain_ % vain_m_.size()] = place_m;
+  num_vain_ = std::min(num_vain_ + 1, vain_m_.size());
+}
+
 PlannedStep StepPlanner::again(const Retry& retry, const RobotNow& now, const LadderView& ladder) {
   GraspQuery query = query_of(retry.leg, retry.upwards, now);
   query.from_m = retry.from_m;
+  query.is_long = (retry.tried_m - retry.from_m).norm() > params_.grasp.max_step_m;
   if (retry.other_rung) {
     query.avoid_rung_id = retry.tried_rung_id;
   } else {
@@ -240,7 +268,7 @@ PlannedStep StepPlanner::again(const Retry& retry, const RobotNow& now, const La
 
 bool StepPlanner::has_stepped(Leg leg, bool upwards, const RobotNow& now) const {
   // A step that a stop interrupted is finished while arming: the other leg of the pair is behind.
-  const Leg other = static_cast<Leg>(leg ^ 1);
+  const Leg other = mate_of(leg);
   const double lead_m = kinematics_.foot_m(leg, now.stance.angles_rad[leg]).x() -
                         kinematics_.foot_m(other, now.stance.angles_rad[other]).x();
   return (upwards ? lead_m : -lead_m) > kAhead_m;
@@ -271,6 +299,7 @@ GraspQuery StepPlanner::query_of(Leg leg, bool upwards, const RobotNow& now) con
     query.held[other] = {other != leg, query.T_odom_body * foot_m};
   }
   query.from_m = query.held[leg].position_m;
+  query.vain_m = std::span(vain_m_).first(num_vain_);
   return query;
 }
 
@@ -304,13 +333,16 @@ PlannedStep StepPlanner::choose(GraspQuery query, const RobotNow& now, const Lad
   const GraspDecision decision = choice_.choose(ladder, query);
   PlannedStep step;
   step.leg = query.leg;
+  step.upwards = query.upwards;
   step.refusal = decision.refusal;
   step.ready = decision.refusal == Refusal::kNone;
   if (step.ready) {
     const Eigen::Isometry3d T_body_odom = query.T_odom_body.inverse();
     const GraspTarget& target = decision.target;
+    step.joint_margin_rad = target.joint_margin_rad;
     step.goal = moved(T_body_odom, {target.rung_id, target.pregrasp_m, target.grasp_m,
                                     target.radius_m, target.rung_axis});
+    step.goal.is_beyond = (target.grasp_m - query.from_m).norm() > params_.grasp.max_step_m;
   }
   return step;
 }

@@ -3,6 +3,8 @@
 // the crawl. Goals come out in the body frame as it stands.
 #pragma once
 
+#include <array>
+
 #include "climb/body_shift.h"
 #include "climb/controller_io.h"
 #include "climb/step_order.h"
@@ -11,6 +13,7 @@ namespace climb {
 
 struct PlannedStep {
   Leg leg = kRearRight;
+  bool upwards = true;
   bool ready = false;                ///< goal (and shift) are set
   bool at_top = false;               ///< both front claws hold the highest trusted rung
   bool at_dock = false;              ///< on the way down: all claws where they were in the dock
@@ -18,6 +21,7 @@ struct PlannedStep {
   Burden burden = Burden::kBorne;    ///< when not ready and nothing is refused
   BodyMove move;                     ///< of the body, before the step
   LimbGoal goal;                     ///< body frame, after the shift
+  double joint_margin_rad = 0.0;     ///< of that leg on its way
 };
 
 /// What the planner needs to know of the robot now.
@@ -51,6 +55,15 @@ class StepPlanner {
   /// The next step of the crawl, with the body shift that it wants first (zero: it is in place).
   /// may_shift false: from where the body is.
   PlannedStep next(bool upwards, bool may_shift, const RobotNow& now, const LadderView& ladder);
+
+  /// Where next() is refused: from another place of the body (the shift comes first), over a rung
+  /// that is none to grasp, or another leg before it. Else as it was refused.
+  PlannedStep over(const PlannedStep& refused, bool may_shift, const RobotNow& now,
+                   const LadderView& ladder);
+
+  /// The rung at this place (odom) does not hold: no step goes there, until the next order.
+  void remember_vain(const Eigen::Vector3d& place_m);
+  void forget_vain() { num_vain_ = 0; }
 
   /// After vain tries at `tried` (odom): another place on that rung or, if `other_rung`, another
   /// one.
@@ -89,6 +102,10 @@ class StepPlanner {
   GraspQuery query_of(Leg leg, bool upwards, const RobotNow& now) const;
   BodyMove body_move(double ahead_m, const RobotNow& now) const;
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
+  PlannedStep from_best_place(const PlannedStep& refused, bool may_shift, const RobotNow& now,
+                              const LadderView& ladder);
+  BodyMove as_far_as_all_reach(const BodyMove& move, const RobotNow& now) const;
+  std::optional<Stance> stance_after(const BodyMove& move, const RobotNow& now) const;
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;
   bool goes_on_above(const RungView& top, const RobotNow& now, const LadderView& ladder) const;
@@ -100,6 +117,8 @@ class StepPlanner {
   Leg last_leg_ = kFrontLeft;
   bool last_upwards_ = true;
   std::optional<PerLeg<Eigen::Vector3d>> dock_feet_m_;
+  std::array<Eigen::Vector3d, 4> vain_m_;  ///< odom
+  std::size_t num_vain_ = 0;
 };
 
 }  // namespace climb

@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kLowestRung_m = 0.20;
 constexpr double kSameHeight_m = 0.02;
-/// The dock holds the body so far above the rear claws' rung at most: the heads see down to 0.32 m,
-/// and at that edge a sound rung looks damaged.
-constexpr double kSeenBelow_m = 0.30;
+/// The dock of a ladder with wider spaces holds the body so far above the rear claws' rung: the
+/// heads see down to 0.32 m, but near that edge not both ends of it, and it looks like a stub.
+constexpr double kUsualSpacing_m = 0.30;
+constexpr double kSeenBelow_m = 0.20;
 
 int rung_at(const Scene& scene, double height_m) {
   for (std::size_t i = 0; i < scene.rungs.size(); ++i) {
@@ -48,7 +49,7 @@ PlantParams before_ladder(const Scene& scene, PlantParams params) {
   const int front = rung_at(scene, low_m + 2.0 * spacing_m);
   params.start_rung = {front, front, rear, rear};
   params.ladder_x_m = scene.rungs[static_cast<std::size_t>(rear)].end0_m.x();
-  params.body_height_m = low_m + std::min(spacing_m, kSeenBelow_m);
+  params.body_height_m = low_m + (spacing_m > kUsualSpacing_m ? kSeenBelow_m : spacing_m);
   return params;
 }
 

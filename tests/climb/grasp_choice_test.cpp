@@ -151,6 +151,38 @@ TEST(GraspChoice, TellsAMissingRung) {
   EXPECT_EQ(far_off.choose().refusal, Refusal::kTooFarAhead);
 }
 
+// A long step goes over the next rung only where that is none to grasp, and not over two.
+TEST(GraspChoice, TakesTheRungBeyondInALongStep) {
+  Scene scene;
+  scene.query.is_long = true;
+  scene.query.T_odom_body.translation().z() = 0.95;
+  EXPECT_EQ(scene.choose().target.rung_id, 4);
+  scene.goal().damaged = true;
+  GraspDecision decision = scene.choose();
+  ASSERT_EQ(decision.refusal, Refusal::kNone) << name(decision.refusal);
+  EXPECT_EQ(decision.target.rung_id, 5);
+  EXPECT_GT(decision.target.joint_margin_rad, 0.1);
+  scene.query.is_long = false;
+  EXPECT_EQ(scene.choose().refusal, Refusal::kDamaged);
+  scene.query.is_long = true;
+  scene.rungs[4].trusted = false;
+  decision = scene.choose();
+  EXPECT_EQ(decision.rungs[5].refusal, Refusal::kTooFarAhead);
+  EXPECT_EQ(decision.refusal, Refusal::kDamaged);
+}
+
+// What was tried in vain is known by its place, whatever its rung is called now.
+TEST(GraspChoice, AvoidsWhatDoesNotHold) {
+  Scene scene;
+  const Eigen::Vector3d vain_m(0.01, 0.1, 1.21);
+  scene.query.vain_m = std::span(&vain_m, 1);
+  scene.goal().id = 99;
+  EXPECT_EQ(scene.choose().refusal, Refusal::kAvoided);
+  const Eigen::Vector3d elsewhere_m(0.0, 0.0, 1.5);
+  scene.query.vain_m = std::span(&elsewhere_m, 1);
+  EXPECT_EQ(scene.choose().target.rung_id, 99);
+}
+
 // Both a stretch just as wide as offered by the perception and no wider than the claw and its
 // margin may be used; its middle is then the grasp.
 TEST(GraspChoice, TakesAJustWideEnoughStretch) {
