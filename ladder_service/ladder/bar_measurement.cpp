@@ -8,7 +8,6 @@
 
 #include "ladder/backdrop.h"
 #include "ladder/chord_depth.h"
-#include "ladder/range_noise.h"
 #include "ladder/rectangular_bar.h"
 
 namespace ladder {
@@ -194,12 +193,10 @@ bool BarMeasurement::refit(const BarFrame& frame, const Bar& bar, const Between&
     add_heads(frame, frame.nodes[k], heads);
   }
   if (fit.sum.weight < p.min_weight) return false;
-  const double share = params_.bar.max_noise_share;
-  fit.spread_m2 = sharp_covariance(fit.sum, bar.eye_m, share);
+  fit.spread_m2 = fit.sum.covariance();
   PrincipalAxis spread = principal_axis(fit.spread_m2);
   double weight_in_heads = 0.0;
-  const Eigen::Matrix3d within_m2 = without_range_noise(
-      spread_within_heads(heads, p, weight_in_heads), fit.sum.mean() - bar.eye_m, share);
+  const Eigen::Matrix3d within_m2 = spread_within_heads(heads, p, weight_in_heads);
   const PrincipalAxis within = principal_axis(within_m2);
   if (weight_in_heads > p.head_min_share * fit.sum.weight && within.is_linear(p.head_linearity)) {
     spread.direction = within.direction;
