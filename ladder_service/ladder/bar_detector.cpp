@@ -41,7 +41,8 @@ const Detections& BarDetector::detect(const NodeCloud& seen) {
   if (ladder.found()) measure_ladder(cloud, bars, ladder);
   for (int i = 0; i < static_cast<int>(bars.rails.size()); ++i) {
     if (found_.is_ladder && (i == ladder.left || i == ladder.right)) continue;
-    found_.rails.push_back(measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i], {}));
+    found_.rails.push_back(
+        measurement_.measure_rail({cloud, nodes_, bars}, bars.rails[i], Eigen::Vector3d::Zero()));
   }
   measure_others(cloud, bars);
   alignment_.learn(seen, nodes_, bars, ladder_);
@@ -51,11 +52,11 @@ const Detections& BarDetector::detect(const NodeCloud& seen) {
 void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
                                  const LadderHypothesis& ladder) {
   const BarFrame frame{cloud, nodes_, bars};
-  const RailView view = measurement_.rail_view(frame, ladder);
   const Bar& left_bar = bars.rails[ladder.left];
   const Bar& right_bar = bars.rails[ladder.right];
-  MeasuredRail left = measurement_.measure_rail(frame, left_bar, view);
-  MeasuredRail right = measurement_.measure_rail(frame, right_bar, view);
+  const Eigen::Vector3d across = left_bar.axis.across(right_bar.axis.origin_m);
+  MeasuredRail left = measurement_.measure_rail(frame, left_bar, across);
+  MeasuredRail right = measurement_.measure_rail(frame, right_bar, across);
   // Rails are parallel.
   const Eigen::Vector3d along =
       left_bar.support() * left.axis.direction + right_bar.support() * right.axis.direction;

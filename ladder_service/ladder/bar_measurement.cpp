@@ -105,77 +105,66 @@ Eigen::Vector3d BarMeasurement::rail_direction(
   return is_upwards ? within.direction : Eigen::Vector3d(-within.direction);
 }
 
-// The fronts of bars are nearly flat: what varies along the view is noise. A flat rail's side is
-// seen with its front, so width counts along the rungs, not across the view.
-RailView BarMeasurement::rail_view(const BarFrame& frame, const LadderHypothesis& ladder) const {
-  constexpr double kMinSine2 = 0.25;  // between view and bar
-  double weight = 0.0;
-  RailView view;
-  for (const Joint& joint : ladder.joints) {
-    const Bar& bar = frame.bars.rungs[joint.bar];
-    const Eigen::Vector3d ray = unit(bar.axis.origin_m - bar.eye_m, Eigen::Vector3d::UnitX());
-    const Eigen::Vector3d depth = ray - ray.dot(bar.axis.direction) * bar.axis.direction;
-    const double sine2 = depth.squaredNorm();
-    if (sine2 < kMinSine2) continue;
-    // Of the range's variance, sine^2 shows in the unit vector's direction.
-    view.noise_m2 += bar.sum.weight * depth.dot(bar.sum.covariance() * depth) / (sine2 * sine2);
-    weight += bar.sum.weight;
-  }
-  view.noise_m2 = weight > 0.0 ? std::max(0.0, view.noise_m2 / weight) : 0.0;
-  const Axis& left = frame.bars.rails[ladder.left].axis;
-  const Eigen::Vector3d across = left.across(frame.bars.rails[ladder.right].axis.origin_m);
-  view.across = unit(across, Eigen::Vector3d::Zero());
-  return view;
-}
-
 MeasuredRail BarMeasurement::measure_rail(const BarFrame& frame, const Bar& rail,
-                                          const RailView& rail_view) const {
+                                          const Eigen::Vector3d& across) const {
   const MeasureParams& p = params_.measure;
   MeasuredRail out{rail.axis, rail.from_m, rail.to_m, p.rail_half_width_m};
   // Away from where rungs are joined, whose own points would pull it inwards.
   MomentSum sum;
-  std::array<MomentSum, kNumHeads> heads;
+  std::array<MomentSum, kNumHeads> heads, free_heads;
   for (const int k : frame.bars.members_of(rail)) {
     const bool joined =
         std::any_of(frame.bars.rungs.begin(), frame.bars.rungs.end(), [&](const Bar& rung) {
           return rung.axis.distance(frame.nodes.position_m(k)) < params_.test.on_rung_m;
         });
-    if (!joined) sum.add(frame.nodes[k].sum);
     add_heads(frame, frame.nodes[k], heads);
+    if (joined) continue;
+    sum.add(frame.nodes[k].sum);
+    add_heads(frame, frame.nodes[k], free_heads);
   }
   out.axis.direction = rail_direction(rail, heads);
   if (sum.weight < p.min_weight) return out;
-  const Eigen::Vector3d view = rail.axis.origin_m - rail.eye_m;
-  Eigen::Vector3d side = unit(view.cross(rail.axis.direction), Eigen::Vector3d::UnitY());
-  if (rail_view.across.squaredNorm() > 0.0) side = rail_view.across;
-  const double range_m = std::sqrt(view.squaredNorm());
-  const double along_view = side.dot(view) / range_m;
-  // Noise is also what spreads the rail's own points farther than a rail is deep.
-  constexpr double kMostDepth_m2 = 0.0002;  // variance: 50 mm
-  const Eigen::Matrix3d covariance_m2 = sum.covariance();
-  const double spread_m2 = view.dot(covariance_m2 * view) / (range_m * range_m);
-  const double noise_m2 =
-      along_view * along_view * std::max(rail_view.noise_m2, spread_m2 - kMostDepth_m2);
-  const double variance_m2 = std::max(0.0, side.dot(covariance_m2 * side) - noise_m2);
-  const double half_m = std::sqrt(3.0 * variance_m2) - 0.5 * range_m * frame.cloud.pixel_pitch_rad;
-  if (half_m > p.rail_width_switch_m) {
-    out.half_width_m = half_m;
-  } else if (rail_view.across.squaredNorm() > 0.0) {
-    out.axis.origin_m = sum.mean();
-    out.axis.origin_m += from_seen_to_middle(frame, out, {rail.eye_m, side, covariance_m2});
+  // At a right angle to the rail: along it points lie far apart, whatever the noise.
+  const Eigen::Vector3d ray = unit(-out.axis.across(rail.eye_m), Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d side =
+      unit(across, unit(ray.cross(out.axis.direction), Eigen::Vector3d::UnitY()));
+  double weight = 0.0;
+  Eigen::Matrix3d covariance_m2 = spread_within_heads(free_heads, p, weight);
+  if (weight <= p.head_min_share * sum.weight) covariance_m2 = sum.covariance();
+  const SeenRail seen{ray, side, covariance_m2,
+                      lost_m(frame, {rail.axis, rail.from_m, rail.to_m, rail.eye_m})};
+  out.axis.origin_m = sum.mean();
+  const RailFront front = find_front(seen);
+  if (!(front.half_m > p.rail_width_switch_m)) {
+    const double beside_m = beside_seen_m(out.half_width_m, front.half_seen_m, ray.dot(seen.side));
+    out.axis.origin_m += beside_m * seen.side;
+    return out;
   }
+  // A wide one is a tube or a flat bar: its inner face is not beyond that of either.
+  const double sine = ray.dot(seen.side);
+  const double flat_m = beside_seen_m(front.half_m, front.half_seen_m, sine);
+  const double round_m = mean_chord_depth_m(front.half_seen_m, front.half_seen_m) * sine;
+  const double low_m = std::min(flat_m - front.half_m, round_m - front.half_seen_m);
+  const double high_m = std::max(flat_m + front.half_m, round_m + front.half_seen_m);
+  out.axis.origin_m += 0.5 * (low_m + high_m) * seen.side;
+  out.half_width_m = 0.5 * (high_m - low_m);
   return out;
 }
 
-// A flat rail shows its front and one of its sides.
-Eigen::Vector3d BarMeasurement::from_seen_to_middle(const BarFrame& frame, const MeasuredRail& rail,
-                                                    const SeenRail& seen) const {
-  const Eigen::Vector3d ray = unit(-rail.axis.across(seen.eye_m), Eigen::Vector3d::UnitX());
-  const Eigen::Vector3d across = ray.cross(rail.axis.direction);
+// Across the view points lie where they are seen; noise moves them along it.
+RailFront BarMeasurement::find_front(const SeenRail& seen) {
+  constexpr double kLeastCosine = 0.1;
+  const double sine = seen.ray.dot(seen.side);
+  const Eigen::Vector3d across_ray = seen.side - sine * seen.ray;
+  const double cosine = std::max(kLeastCosine, std::sqrt(across_ray.squaredNorm()));
+  const Eigen::Vector3d across = (sine > 0.0 ? -1.0 : 1.0) / cosine * across_ray;
   const double variance_m2 = std::max(0.0, across.dot(seen.covariance_m2 * across));
-  const double half_seen_m =
-      std::sqrt(3.0 * variance_m2) + lost_m(frame, {rail.axis, rail.from_m, rail.to_m, seen.eye_m});
-  return beside_seen_m(rail.half_width_m, half_seen_m, ray.dot(seen.side)) * seen.side;
+  RailFront front;
+  front.half_seen_m = std::max(0.0, std::sqrt(3.0 * variance_m2) + seen.lost_m);
+  if (!(variance_m2 > 0.0)) return front;
+  const double bend = across.dot(seen.covariance_m2 * seen.ray) / variance_m2;
+  front.half_m = front_share(bend, std::abs(sine) / cosine) * front.half_seen_m / cosine;
+  return front;
 }
 
 bool BarMeasurement::refit(const BarFrame& frame, const Bar& bar, const Between& rails,

@@ -21,18 +21,19 @@ struct Between {
   const MeasuredRail* right = nullptr;
 };
 
-/// How a rail's width is measured: in this direction, and how much of the variance along the view
-/// is the heads' noise.
-struct RailView {
-  Eigen::Vector3d across = Eigen::Vector3d::Zero();  ///< unit; zero = at a right angle to the view
-  double noise_m2 = 0.0;
-};
-
-/// What is seen of a rail, from where, and the direction towards the right one.
+/// What is seen of a rail: the view at a right angle to it, the direction towards the right one,
+/// how the points scatter, and how much is lost at either edge.
 struct SeenRail {
-  Eigen::Vector3d eye_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitX();
   Eigen::Vector3d side = Eigen::Vector3d::UnitY();
   Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();
+  double lost_m = 0.0;
+};
+
+/// Half of what is seen of it across the view, and of its front, if it is a flat bar.
+struct RailFront {
+  double half_seen_m = 0.0;
+  double half_m = 0.0;
 };
 
 /// What one frame gave so far.
@@ -49,21 +50,20 @@ class BarMeasurement {
   /// Its visible front. Nothing when too few points remain or it touches neither rail.
   std::optional<MeasuredBar> measure(const BarFrame& frame, int bar_index,
                                      const Between& rails) const;
-  MeasuredRail measure_rail(const BarFrame& frame, const Bar& rail, const RailView& view) const;
+  /// Its front lies along `across`, from rail to rail; zero: at a right angle to the view.
+  MeasuredRail measure_rail(const BarFrame& frame, const Bar& rail,
+                            const Eigen::Vector3d& across) const;
   /// From the visible front of a round bar to its axis.
   static void push_back(double radius_m, MeasuredBar& bar);
   /// The same for a square one whose height is this many halves of its side.
   static void push_back_square(double height, MeasuredBar& bar);
-  /// How rails are seen between which these bars lie.
-  RailView rail_view(const BarFrame& frame, const LadderHypothesis& ladder) const;
 
  private:
   struct Fit;
   bool refit(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
   Eigen::Vector3d rail_direction(const Bar& rail,
                                  const std::array<MomentSum, kNumHeads>& heads) const;
-  Eigen::Vector3d from_seen_to_middle(const BarFrame& frame, const MeasuredRail& rail,
-                                      const SeenRail& seen) const;
+  static RailFront find_front(const SeenRail& seen);
   double lost_m(const BarFrame& frame, const SeenStretch& bar) const;
   void find_ends(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
   void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const;

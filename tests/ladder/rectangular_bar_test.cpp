@@ -126,5 +126,49 @@ TEST(RungProfile, RoundUntilShown) {
   EXPECT_FALSE(profile.is_square());
 }
 
+/// Covariance of depth and place across / variance of the place, of points spread evenly across.
+template <class Depth>
+double bend_of(double half_m, const Depth& depth_m) {
+  constexpr int kNumPoints = 2000;
+  double place2 = 0.0, product = 0.0, depth = 0.0;
+  for (int i = 0; i < kNumPoints; ++i) {
+    const double a = half_m * (2.0 * (i + 0.5) / kNumPoints - 1.0);
+    depth += depth_m(a) / kNumPoints;
+    place2 += a * a / kNumPoints;
+    product += a * depth_m(a) / kNumPoints;
+  }
+  return product / place2;
+}
+
+// Straight on, or where the angle is no number, all that is seen is the front.
+TEST(FrontShare, OddAnglesShowTheFront) {
+  EXPECT_EQ(front_share(0.0, 0.0), 1.0);
+  EXPECT_EQ(front_share(0.3, -1.0), 1.0);
+  EXPECT_EQ(front_share(0.0, std::numeric_limits<double>::quiet_NaN()), 1.0);
+}
+
+// A flat bar's front is told from its side, whatever of it is seen.
+TEST(FrontShare, TellsFrontFromSide) {
+  for (const double tangent : {0.1, 0.4, 0.8}) {
+    for (const double share : {0.1, 0.4, 0.7, 1.0}) {
+      const double half_m = 0.02;
+      const double edge_m = half_m * (2.0 * share - 1.0);
+      const auto depth_m = [&](double a) {
+        return a < edge_m ? -tangent * (a - edge_m) : (a - edge_m) / tangent;
+      };
+      EXPECT_NEAR(front_share(bend_of(half_m, depth_m), tangent), share, 0.02) << tangent;
+    }
+  }
+}
+
+// A tube, the same from everywhere, is not taken for a thin bar seen from the side.
+TEST(FrontShare, TubesAreWide) {
+  for (const double tangent : {0.1, 0.4, 0.7}) {
+    const double half_m = 0.02;
+    const auto depth_m = [&](double a) { return -std::sqrt(half_m * half_m - a * a); };
+    EXPECT_GT(front_share(bend_of(half_m, depth_m), tangent), 0.55) << tangent;
+  }
+}
+
 }  // namespace
 }  // namespace ladder
