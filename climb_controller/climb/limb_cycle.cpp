@@ -29,7 +29,7 @@ void LimbCycle::reset(const LimbInput& measured, Hold hold) {
   state_ = holds ? S::kLoaded : S::kPregrasp;
   target_ = {measured.angles_rad, LegAngles::Zero(), measured.claw.jaw_rad, holds ? 1.0 : 0.0};
   jaw_goal_rad_ = holds ? claw_.closed_rad : measured.claw.jaw_rad;  // nothing opens unasked
-  moves_ = parks_ = wants_goal_ = returned_ = failed_ = is_jaw_forced_ = false;
+  moves_ = parks_ = wants_goal_ = failed_ = is_jaw_forced_ = false;
   if (hold != Hold::kConfirmed) {
     held_rung_id_ = hold == Hold::kFelt ? kFeltRungId - leg_ : -1;
     goal_ = {};
@@ -39,14 +39,20 @@ void LimbCycle::reset(const LimbInput& measured, Hold hold) {
   }
   proves_ = false;
   home_.reset();
+  forget_tries();
+  in_state_s_ = waited_s_ = 0.0;
+  confirmation_.forgive();
+  if (holds) confirmation_.press_again(params_.press_again_s);
+  move_joints(measured.angles_rad, 0.0);
+}
+
+void LimbCycle::forget_tries() {
+  returned_ = false;
   way_out_m_.reset();
   way_past_m_.reset();
   num_tries_ = 0;
   num_places_ = 1;
-  spent_s_ = in_state_s_ = waited_s_ = 0.0;
-  confirmation_.forgive();
-  if (holds) confirmation_.press_again(params_.press_again_s);
-  move_joints(measured.angles_rad, 0.0);
+  spent_s_ = 0.0;
 }
 
 bool LimbCycle::begin(const LimbGoal& goal) {
@@ -57,12 +63,7 @@ bool LimbCycle::begin(const LimbGoal& goal) {
   remember_home();
   goal_ = goal;
   moves_ = true;
-  returned_ = false;
-  way_out_m_.reset();
-  way_past_m_.reset();
-  num_tries_ = 0;
-  num_places_ = 1;
-  spent_s_ = 0.0;
+  forget_tries();
   if (state_ == S::kLoaded) return take(LimbEvent::kLift);
   // Where it stands after a reset: round a rung perhaps, then it is verified there; half closed,
   // then it opens before it moves.
@@ -77,12 +78,7 @@ bool LimbCycle::prove() {
   remember_home();
   goal_ = *home_;
   moves_ = proves_ = true;
-  returned_ = false;
-  way_out_m_.reset();
-  way_past_m_.reset();
-  num_tries_ = 0;
-  num_places_ = 1;
-  spent_s_ = 0.0;
+  forget_tries();
   return take(LimbEvent::kProve);
 }
 

@@ -149,6 +149,7 @@ class LimbCycle {
   void go_past();
   void return_home(const LimbInput& input, bool arrived);
   void keep_budget();
+  void forget_tries();
   void remember_home();
   void stay_home();
   void stand_free();
