@@ -333,6 +333,7 @@ void read(ConfigTable table, climb::ControllerParams& p) {
   table.read("enable_timeout_s", p.enable_timeout_s, {0.1, 60.0});
   table.read("dock_timeout_s", p.dock_timeout_s, {1.0, 3600.0});
   table.read("max_shifts", p.max_shifts, {0, 10});
+  table.read("max_withdrawn", p.max_withdrawn, {1, 10});
   table.read("reset_after_s", p.reset_after_s, {0.0, 10.0});
   table.read("put_down_after_s", p.put_down_after_s, {0.0, 10.0});
   table.read("look_again_s", p.look_again_s, {0.0, 60.0});

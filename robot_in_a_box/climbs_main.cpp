@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // ladder_climbs: whole climbs in full fidelity and virtual time, several at once in forked copies.
 // A seed says everything. Writes what came of each as one JSON line. Behind scripts/climbs.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -127,6 +128,17 @@ void log_into(lcm::LogFile& log, const Arguments& arguments, FullClimb& full, By
       });
 }
 
+/// What is wrong with it: "!" damaged, "?" not trusted, "-" nothing of it is offered.
+const char* mark_of(const climb::LadderView& view, int rung_index) {
+  const climb::RungView& rung = view.rungs[rung_index];
+  if (rung.damaged) return "!";
+  if (!rung.trusted) return "?";
+  const bool is_offered = std::any_of(
+      view.stretches.begin(), view.stretches.end(),
+      [&](const climb::StretchView& stretch) { return stretch.rung_index == rung_index; });
+  return is_offered ? "" : "-";
+}
+
 void trace(FullClimb& full) {
   const robot_in_a_box::ClimbBox& box = full.climb().box();
   const climb::ControllerOutput& out = box.report().output;
@@ -138,8 +150,8 @@ void trace(FullClimb& full) {
   }
   const climb::LadderView view = full.eyes().view();
   std::printf("  %s", view.confirmed ? "ladder:" : "no ladder:");
-  for (const climb::RungView& rung : view.rungs) {
-    std::printf(" %.2f%s", rung.end0_m.z(), rung.damaged ? "!" : (rung.trusted ? "" : "?"));
+  for (int i = 0; i < static_cast<int>(view.rungs.size()); ++i) {
+    std::printf(" %.2f%s", view.rungs[i].end0_m.z(), mark_of(view, i));
   }
   std::printf("\n");
   std::fflush(stdout);

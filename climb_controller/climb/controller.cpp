@@ -149,7 +149,10 @@ bool Controller::obey_climb(bool upwards) {
   if (finishes && upwards != upwards_) return false;
   if (!take(E::kClimb)) return false;
   upwards_ = upwards;
-  if (!finishes) planner_.forget_vain();
+  if (!finishes) {
+    planner_.forget_vain();
+    num_withdrawn_ = 0;
+  }
   ending_ = ahead == Reaction::kNothing ? Ending::kNone : Ending::kNow;
   return true;
 }

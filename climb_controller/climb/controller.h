@@ -27,12 +27,13 @@ struct ControllerParams {
   double enable_timeout_s = 5.0;
   double dock_timeout_s = 120.0;  ///< for four claws to grasp in the dock
   int max_shifts = 2;             ///< of the body before one step
+  int max_withdrawn = 3;          ///< targets of one step, then HOLD
   double put_down_after_s = 0.2;  ///< frozen so long, then the limb in the air is put down
   double torque_ramp_s = 0.5;     ///< of the feed-forward, when the dock lets go or takes over
   double max_sag_m = 0.004;       ///< of the body in the dock, without feed-forward
   double max_borne_part = 0.5;    ///< of the weight on the claws: more, and no dock is there
   double reset_after_s = 0.3;     ///< no reset before everything stands
-  double look_again_s = 2.0;      ///< for rungs that are not trusted just now, and at the top
+  double look_again_s = 2.0;      ///< for rungs that are no good just now, and at the top
 };
 
 /// "" or the violated relation, naming the field.
@@ -128,6 +129,7 @@ class Controller {
   bool upwards_ = true;
   Ending ending_ = Ending::kNone;
   int num_shifts_ = 0;          ///< before the step that is next
+  int num_withdrawn_ = 0;       ///< targets of that step
   int num_steps_to_rest_ = 0;   ///< since HOLD was ordered
   double looked_s_ = 0.0;       ///< standing, for a rung that could be trusted
   bool was_top_ = false;        ///< ... and seen to be at the top all that time

@@ -13,6 +13,22 @@ namespace {
 
 constexpr FaultFlags kFalls = flag(Fault::kFreeFall) | flag(Fault::kTooFewGrasps);
 
+/// Another look at the ladder may tell otherwise.
+bool may_pass(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::kNotTrusted:
+    case Refusal::kDamaged:
+    case Refusal::kLowConfidence:
+    case Refusal::kRadius:
+    case Refusal::kUncertain:
+    case Refusal::kNoStretch:
+    case Refusal::kRungMissing:
+      return true;
+    default:
+      return false;
+  }
+}
+
 PerAxis<double> measured_rad(const ControllerInput& input) {
   PerAxis<double> angles_rad;
   for (int axis = 0; axis < kNumAxes; ++axis) angles_rad[axis] = input.axes[axis].position_rad;
@@ -186,14 +202,11 @@ void Controller::work_climbing(const ControllerInput& input) {
 }
 
 bool Controller::looks_again() {
-  // Trust comes and goes: a rung that is not good enough just now is looked at for a while; none
-  // there, or no ladder at all, is told at once. The top is the top when nothing was seen above it
-  // all that time.
-  const bool may_pass = plan_.at_top || plan_.refusal == Refusal::kNotTrusted ||
-                        plan_.refusal == Refusal::kLowConfidence ||
-                        plan_.refusal == Refusal::kUncertain || plan_.refusal == Refusal::kRadius ||
-                        plan_.refusal == Refusal::kNoStretch || may_step_over_;
-  if (plan_.ready || !may_pass) {
+  // What is seen of a rung comes and goes: one that is not good enough just now is looked at for a
+  // while; one out of reach, or no ladder at all, is told at once. The top is the top when nothing
+  // was seen above it all that time.
+  const bool passes = plan_.at_top || may_pass(plan_.refusal) || may_step_over_;
+  if (plan_.ready || !passes) {
     looked_s_ = 0.0;
     return false;
   }
@@ -223,10 +236,12 @@ bool Controller::end_step(const ControllerInput& input) {
   stepping_ = false;
   const bool made = !limbs_[plan_.leg].returned();
   if (made) {
-    num_shifts_ = 0;
+    num_shifts_ = num_withdrawn_ = 0;
     if (ending_ == Ending::kAtRest && ++num_steps_to_rest_ >= kNumLegs) ending_ = Ending::kNow;
     planner_.made(plan_.leg, upwards_);
-  } else {  // no grasp up there: it is back on its old rung
+  } else if (withdrawn_ && ++num_withdrawn_ < params_.max_withdrawn) {
+    return true;  // it is back on its old rung and looks again
+  } else {  // no grasp up there
     plan_.ready = false;
     plan_.refusal = withdrawn_ ? Refusal::kNotTrusted : Refusal::kAvoided;
     // A rung that came off, or shows its damage by now, is seen so.

@@ -156,6 +156,36 @@ TEST_F(ControllerTest, ReturnsWhenTheTargetIsWithdrawn) {
   EXPECT_EQ(output_.rung_ids[kRearRight], 1);
 }
 
+// A target that disappears for a moment: back to the old rung, and once more.
+TEST_F(ControllerTest, TriesAgainWhenTheTargetComesBack) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0));
+  stand_.rungs[1].damaged = true;
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kLoaded, 30.0)) << where();
+  stand_.rungs[1].damaged = false;
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0)) << where();
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kLoaded, 30.0)) << where();
+  EXPECT_EQ(output_.rung_ids[kRearRight], 2);
+  EXPECT_EQ(output_.state, S::kClimbing);
+}
+
+// A target that comes and goes is left alone in the end.
+TEST_F(ControllerTest, LeavesATargetThatComesAndGoes) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  for (int i = 0; i < ControllerParams().max_withdrawn; ++i) {
+    ASSERT_EQ(output_.state, S::kClimbing) << i << where();
+    ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0)) << i << where();
+    stand_.rungs[1].trusted = false;
+    ASSERT_TRUE(reach_limb(kRearRight, LimbState::kLoaded, 30.0)) << i << where();
+    stand_.rungs[1].trusted = true;
+  }
+  ASSERT_TRUE(reach(S::kHold, 1.0)) << where();
+  EXPECT_EQ(output_.refusal, Refusal::kNotTrusted);
+  EXPECT_EQ(output_.rung_ids[kRearRight], 1);
+}
+
 // A rung that breaks under a resting claw: the loss is latched and told, no other claw opens.
 TEST_F(ControllerTest, LatchesALostStance) {
   ASSERT_TRUE(arm()) << where();
