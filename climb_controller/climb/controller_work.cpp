@@ -180,9 +180,10 @@ void Controller::work_climbing(const ControllerInput& input) {
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
     const auto step_over = [&] { return planner_.over(plan_, may_shift, now, ladder_of(input)); };
     if (looked_s_ <= 0.0) may_step_over_ = !plan_.ready && step_over().ready;
-    if (looks_again()) return;
+    const bool rises = plan_.at_top && !plan_.move.is_none();
+    if (!rises && looks_again()) return;
     if (!plan_.ready && may_step_over_) plan_ = step_over();
-    ends = !plan_.ready && !plan_.at_dock;
+    ends = !plan_.ready && !plan_.at_dock && !rises;
   }
   if (!ends && !plan_.move.is_none()) {
     PerLeg<LegAngles> told_rad;
@@ -241,7 +242,7 @@ bool Controller::end_step(const ControllerInput& input) {
     planner_.made(plan_.leg, upwards_);
   } else if (withdrawn_ && ++num_withdrawn_ < params_.max_withdrawn) {
     return true;  // it is back on its old rung and looks again
-  } else {  // no grasp up there
+  } else {        // no grasp up there
     plan_.ready = false;
     plan_.refusal = withdrawn_ ? Refusal::kNotTrusted : Refusal::kAvoided;
     // A rung that came off, or shows its damage by now, is seen so.

@@ -83,7 +83,7 @@ PlannedStep StepPlanner::from_best_place(const PlannedStep& refused, bool may_sh
       margin_rad = std::min(margin_rad, kinematics_.limit_margin_rad(leg, angles_rad));
     }
     const double worth = margin_rad - kUnusual_rad_m * std::abs(ahead_m - usual_m);
-    if (!(margin_rad > 0.0) || (best.ready && worth <= best_worth)) continue;
+    if (!all_bend(*stance) || (best.ready && worth <= best_worth)) continue;
     const SupportVerdict verdict = support_.check_without(*stance, refused.leg);
     if (!(verdict.margin >= params_.support.min_margin)) continue;
     best = step;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kAhead_m = 0.10;  ///< less than half the distance of two rungs
 constexpr double kUsualSpacing_m = 0.30;
+constexpr double kRiseAtTop = 2.0;  ///< usual shifts of the body, to see what is above a gap
 /// A docked claw stands in front of its rung: looking from so far below finds that one first.
 constexpr double kLookFromBelow_m = 0.20;
 constexpr double kRungBeside_m = 0.40;  ///< a rung reaches so far to either side of a claw on it
@@ -200,6 +201,8 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
   }
   if (upwards && is_at_top(now, ladder)) {
     step.at_top = true;
+    const double rise_m = kRiseAtTop * body_shift_m(spacing_m(ladder), upwards);
+    if (may_shift) step.move = as_far_as_all_reach(body_move(rise_m, now), now);
     return step;
   }
   for (const Leg leg : kLegs) {
@@ -230,9 +233,22 @@ BodyMove StepPlanner::as_far_as_all_reach(const BodyMove& move, const RobotNow& 
   for (const double part : {1.0, 0.8, 0.6, 0.4, 0.2}) {
     BodyMove shorter = move;
     shorter.shift_m *= part;
-    if (stance_after(shorter, now)) return shorter;
+    const std::optional<Stance> stance = stance_after(shorter, now);
+    if (stance && all_bend(*stance)) return shorter;
   }
   return {};
+}
+
+bool StepPlanner::all_bend(const Stance& stance) const {
+  for (const Leg leg : kLegs) {
+    const LegAngles& angles_rad = stance.angles_rad[leg];
+    const double margin_rad = kinematics_.limit_margin_rad(leg, angles_rad);
+    const double sigma_m = smallest_singular_value(kinematics_.jacobian(leg, angles_rad));
+    const bool bends =
+        margin_rad >= params_.grasp.min_joint_margin_rad && sigma_m >= params_.grasp.min_sigma_J_m;
+    if (!bends) return false;
+  }
+  return true;
 }
 
 std::optional<Stance> StepPlanner::stance_after(const BodyMove& move, const RobotNow& now) const {

@@ -105,6 +105,9 @@ class StepPlanner {
   PlannedStep from_best_place(const PlannedStep& refused, bool may_shift, const RobotNow& now,
                               const LadderView& ladder);
   BodyMove as_far_as_all_reach(const BodyMove& move, const RobotNow& now) const;
+  /// No leg is nearly straight or at a joint's limit, where a small error of place is a large one
+  /// of its joints.
+  bool all_bend(const Stance& stance) const;
   std::optional<Stance> stance_after(const BodyMove& move, const RobotNow& now) const;
   double spacing_m(const LadderView& ladder) const;
   bool is_at_top(const RobotNow& now, const LadderView& ladder) const;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "climb/controller.h"
@@ -92,6 +93,7 @@ class LadderStand {
   /// A jaw that moves no more, not even with its rung; NaN = it moves.
   climb::PerLeg<double> stuck_jaw_rad = {kMoves, kMoves, kMoves, kMoves};
   bool sees = true;
+  double sees_up_m = 10.0;  ///< above the body; what is higher is not in the message
   std::vector<climb::RungView> rungs;
   std::vector<climb::StretchView> stretches;
 
@@ -187,9 +189,14 @@ class LadderStand {
       input.touch[leg] = held_rung_[leg] > 0;
     }
     if (sees) input.ladder_received_us = input.now_us;
-    input.ladder = {rungs, stretches, 0.0, true};
+    seen_.clear();
+    for (const climb::RungView& rung : rungs) {
+      if (!(rung.end0_m.z() > body_height_m() + sees_up_m)) seen_.push_back(rung);
+    }
+    input.ladder = {seen_, std::span(stretches).first(seen_.size()), 0.0, true};
   }
 
+  std::vector<climb::RungView> seen_;
   climb::ClimbParams params_;
   climb::LegKinematics kinematics_;
   Eigen::Isometry3d T_odom_body_ = Eigen::Isometry3d::Identity();

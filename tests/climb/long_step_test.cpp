@@ -66,6 +66,18 @@ TEST_F(LongStepTest, StepsOverAMissingRung) {
   EXPECT_TRUE(output_.at_top) << where();
 }
 
+// The rung above a gap may be out of sight from below it: the body rises and looks before it is
+// told that this is the top.
+TEST_F(LongStepTest, RisesToSeeWhatIsAboveAGap) {
+  stand_.break_rung(6);
+  stand_.rungs.erase(stand_.rungs.begin() + 5);
+  stand_.stretches.pop_back();
+  stand_.sees_up_m = 0.9;
+  climb_past(1.2);
+  EXPECT_TRUE(output_.at_top) << where();
+  EXPECT_EQ(output_.rung_ids[kFrontLeft], 9);
+}
+
 // One that gives way in the pull test is tried in vain, left, and then stepped over.
 TEST_F(LongStepTest, LeavesOutARungThatDoesNotHold) {
   stand_.break_rung(6);

@@ -217,6 +217,7 @@ TEST_F(StanceTest, TheTopIsThatWhileItLooks) {
   const auto look = [&](const Eigen::Vector3d& off_m, bool flickers) {
     above.end0_m = next.end0_m + off_m;
     above.end1_m = next.end1_m + off_m;
+    cycle();
     order(Order::kClimb);
     for (int i = 0; i < 3000 && output_.state != S::kHold; ++i) {
       const bool is_seen = !flickers || i % 50 == 0;
