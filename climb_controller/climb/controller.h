@@ -79,6 +79,7 @@ class Controller {
   bool looks_again();
   bool end_step(const ControllerInput& input);
   bool ends_here(const RobotNow& now) const;
+  Retry retry_of(Leg leg, const ControllerInput& input) const;
   void search(Leg leg, const ControllerInput& input);
   void watch_target(Leg leg, const ControllerInput& input);
   void move(const ControllerInput& input);

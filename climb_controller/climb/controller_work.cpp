@@ -260,9 +260,8 @@ bool Controller::ends_here(const RobotNow& now) const {
   return ending_ == Ending::kNow || planner_.rests_safely(now);
 }
 
-void Controller::search(Leg leg, const ControllerInput& input) {
-  LimbCycle& limb = limbs_[leg];
-  if (!limb.wants_goal()) return;
+Retry Controller::retry_of(Leg leg, const ControllerInput& input) const {
+  const LimbCycle& limb = limbs_[leg];
   const RobotNow now = robot_now(input);
   const Eigen::Isometry3d T_odom_body = now.pose.T_odom_body();
   Retry retry;
@@ -272,11 +271,18 @@ void Controller::search(Leg leg, const ControllerInput& input) {
   retry.tried_m = T_odom_body * limb.goal().grasp_m;
   retry.from_m =
       limb.home() ? T_odom_body * limb.home()->grasp_m : planner_.docked_from_m(leg, now);
+  return retry;
+}
+
+void Controller::search(Leg leg, const ControllerInput& input) {
+  LimbCycle& limb = limbs_[leg];
+  if (!limb.wants_goal()) return;
+  Retry retry = retry_of(leg, input);
   const bool is_first_place = limb.num_places() == 1;
-  for (const bool other_rung : {false, true}) {
-    retry.other_rung = other_rung;
-    if (!other_rung && !is_first_place) continue;
-    const PlannedStep elsewhere = planner_.again(retry, now, ladder_of(input));
+  for (const Retry::Where where : {Retry::Where::kBeside, Retry::Where::kOtherRung}) {
+    retry.where = where;
+    if (where == Retry::Where::kBeside && !is_first_place) continue;
+    const PlannedStep elsewhere = planner_.again(retry, robot_now(input), ladder_of(input));
     if (elsewhere.ready) return limb.retarget(elsewhere.goal);
   }
   if (state_ == S::kClimbing) {
@@ -304,6 +310,11 @@ void Controller::watch_target(Leg leg, const ControllerInput& input) {
   if (!is_before_commit || limb.returned() || is_blind) return;
   const Eigen::Vector3d goal_m = odometry_.estimate().T_odom_body() * limb.goal().grasp_m;
   if (planner_.offers(limb.goal().rung_id, goal_m, input.ladder)) return;
+  // Lifted off, the body tilts a little, and with it what is far ahead.
+  const PlannedStep there =
+      planner_.again(retry_of(leg, input), robot_now(input), ladder_of(input));
+  const double moved_m = (there.goal.grasp_m - limb.goal().grasp_m).norm();
+  if (there.ready && moved_m <= params_.climb.grasp.same_rung_m) return limb.aim_at(there.goal);
   withdrawn_ = limb.abort();
 }
 

@@ -304,6 +304,12 @@ void LimbCycle::retarget(const LimbGoal& goal) {
   take(LimbEvent::kDone);
 }
 
+void LimbCycle::aim_at(const LimbGoal& goal) {
+  if (!moves_ || returned_) return;
+  follow_body();
+  goal_ = goal;
+}
+
 void LimbCycle::give_up() {
   if (!home_ || returned_ || !take(LimbEvent::kGiveUp)) failed_ = true;
 }

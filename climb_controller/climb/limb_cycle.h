@@ -98,6 +98,10 @@ class LimbCycle {
   /// Back to the old rung, where that is still possible (before the rung is touched).
   bool abort() { return take(LimbEvent::kAbort); }
 
+  /// Its target is seen a little elsewhere by now (body frame). For a limb that is under way to it:
+  /// the path it is on is finished, the next one leads there.
+  void aim_at(const LimbGoal& goal);
+
   /// The tries at this place are used up: the answer is retarget() or give_up().
   bool wants_goal() const { return wants_goal_; }
   void retarget(const LimbGoal& goal);

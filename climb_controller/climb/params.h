@@ -90,13 +90,13 @@ struct MotionParams {
   double pull_further_m = 0.004;  ///< where it falls short of the force: a stretched leg (own)
   double prove_further_m =
       0.026;  ///< ... one found loaded: its push on the ladder goes first (run)
-  double pull_test_max_slip_m = 0.005;
-  double pull_test_min_N = 40.0;   ///< the static share of a limb (run)
-  double pull_test_max_N = 100.0;  ///< (run)
-  double seat_m = 0.012;           ///< down at most, until the finger lies on the rung (run)
-  double seat_m_s = 0.05;          ///< peak (own)
-  double seat_N = 20.0;            ///< it lies there (own: a limb's static share)
-  double unload_s = 0.3;           ///< (run, as are all times)
+  double pull_test_max_slip_m = 0.007;  ///< a stretched stance gives way by 5.3 mm (run)
+  double pull_test_min_N = 40.0;        ///< the static share of a limb (run)
+  double pull_test_max_N = 100.0;       ///< (run)
+  double seat_m = 0.012;                ///< down at most, until the finger lies on the rung (run)
+  double seat_m_s = 0.05;               ///< peak (own)
+  double seat_N = 20.0;                 ///< it lies there (own: a limb's static share)
+  double unload_s = 0.3;                ///< (run, as are all times)
   double open_s = 0.2;
   double settle_s = 0.1;
   double close_s = 0.35;

@@ -273,11 +273,11 @@ PlannedStep StepPlanner::again(const Retry& retry, const RobotNow& now, const La
   GraspQuery query = query_of(retry.leg, retry.upwards, now);
   query.from_m = retry.from_m;
   query.is_long = (retry.tried_m - retry.from_m).norm() > params_.grasp.max_step_m;
-  if (retry.other_rung) {
+  if (retry.where == Retry::Where::kOtherRung) {
     query.avoid_rung_id = retry.tried_rung_id;
   } else {
     query.only_rung_id = retry.tried_rung_id;
-    query.avoid_m = retry.tried_m;
+    if (retry.where == Retry::Where::kBeside) query.avoid_m = retry.tried_m;
   }
   return choose(query, now, ladder);
 }

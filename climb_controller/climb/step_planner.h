@@ -31,11 +31,12 @@ struct RobotNow {
   OdometryEstimate pose;
 };
 
-/// A limb in the air that found no grasp.
+/// A limb in the air that found no grasp, or whose target is seen elsewhere by now.
 struct Retry {
+  enum class Where : std::uint8_t { kThere, kBeside, kOtherRung };
   Leg leg = kRearRight;
   bool upwards = true;
-  bool other_rung = false;
+  Where where = Where::kThere;
   int tried_rung_id = -1;
   Eigen::Vector3d tried_m = Eigen::Vector3d::Zero();  ///< odom
   Eigen::Vector3d from_m = Eigen::Vector3d::Zero();   ///< odom, where it was held

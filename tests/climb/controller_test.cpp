@@ -156,6 +156,20 @@ TEST_F(ControllerTest, ReturnsWhenTheTargetIsWithdrawn) {
   EXPECT_EQ(output_.rung_ids[kRearRight], 1);
 }
 
+// A target that is seen a little elsewhere by now is followed, not left.
+TEST_F(ControllerTest, FollowsATargetThatMoves) {
+  ASSERT_TRUE(arm()) << where();
+  order(Order::kClimb);
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kTransit, 20.0));
+  stand_.rungs[1].end0_m += Eigen::Vector3d(0.02, 0.0, 0.02);
+  stand_.rungs[1].end1_m += Eigen::Vector3d(0.02, 0.0, 0.02);
+  cycle();
+  cycle();
+  EXPECT_EQ(output_.limbs[kRearRight], LimbState::kTransit) << where();
+  ASSERT_TRUE(reach_limb(kRearRight, LimbState::kLoaded, 20.0)) << where();
+  EXPECT_EQ(output_.rung_ids[kRearRight], 2);
+}
+
 // A target that disappears for a moment: back to the old rung, and once more.
 TEST_F(ControllerTest, TriesAgainWhenTheTargetComesBack) {
   ASSERT_TRUE(arm()) << where();
