@@ -59,7 +59,7 @@ TEST_F(Confirmation, RefusesWithOneAgainst) {
   EXPECT_FALSE(claw_.conclude(kFirm).all());
   show(kHeld, 5);
   for (const PullResult pull :
-       {PullResult{0.005, 65.0}, PullResult{0.0, 39.9}, PullResult{kNan, 65.0},
+       {PullResult{0.0075, 65.0}, PullResult{0.0, 39.9}, PullResult{kNan, 65.0},
         PullResult{0.0, kNan}, PullResult{0.0, kInfinity}, PullResult{-0.008, 65.0}}) {
     EXPECT_FALSE(claw_.conclude(pull).all());
   }
