@@ -70,6 +70,9 @@ void read(ConfigTable table, ladder::LadderTestParams& params) {
   table.read("deep_from_m", params.deep_from_m);
   table.read("deep_to_m", params.deep_to_m);
   table.read("deep_half_height_m", params.deep_half_height_m);
+  table.read("tread_from_m", params.tread_from_m);
+  table.read("tread_to_m", params.tread_to_m);
+  table.read("tread_min_depth_m", params.tread_min_depth_m);
   table.read("v_height_m", params.v_height_m);
   table.read("v_gap_m", params.v_gap_m);
   table.read("min_stub_length_m", params.min_stub_length_m);

@@ -226,7 +226,7 @@ bool are_intervals(const ladder_msgs::ladder_t& m) {
   return are_indices(m.interval_rung, m.num_rungs) &&
          are_positions(m.interval_from_m, m.interval_to_m) &&
          pairs_ascending(m.interval_rung, m.interval_from_m) &&
-         all_within(m.interval_reason, m.REASON_NONE, m.REASON_NOT_SEEN);
+         all_within(m.interval_reason, m.REASON_NONE, m.REASON_TOO_DEEP);
 }
 
 bool are_grasps(const ladder_msgs::ladder_t& m) {

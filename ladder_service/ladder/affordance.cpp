@@ -32,6 +32,8 @@ void Affordance::find(std::span<const RungSurface> surfaces, std::span<const Rai
       whole = Reason::kNotTrusted;
     } else if (damage != 0 || surfaces[i].tilt_sin > params_.max_tilt_sin) {
       whole = Reason::kDamaged;
+    } else if (surfaces[i].is_tread) {
+      whole = Reason::kTooDeep;
     } else if (length_m(rung) < params_.gripper_width_m) {
       whole = Reason::kTooShort;
     }

@@ -20,6 +20,7 @@ struct RungSurface {
   double tilt_sin = 0.0;
   double margin_m = 0.0;        ///< its place along itself and its ends are known so well
   bool may_be_offered = false;  ///< old enough (the paper asks more age than for trust)
+  bool is_tread = false;        ///< a board
 };
 
 /// A line upright beside the rungs, with half its width.

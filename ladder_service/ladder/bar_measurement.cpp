@@ -9,6 +9,7 @@
 #include "ladder/backdrop.h"
 #include "ladder/chord_depth.h"
 #include "ladder/rectangular_bar.h"
+#include "ladder/tread_test.h"
 
 namespace ladder {
 
@@ -84,7 +85,14 @@ std::optional<MeasuredBar> BarMeasurement::measure(const BarFrame& frame, int ba
   if (!out.reaches_end0 && !out.reaches_end1) return std::nullopt;
   if (fit.to_m - fit.from_m < params_.measure.stub_margin_m) return std::nullopt;
   out.weight = fit.sum.weight;
+  out.is_wide = bar.wide;
   out.deep = weight_behind(frame.nodes, fit) / fit.sum.weight;
+  const double trim_m = params_.measure.joint_trim_m;
+  out.surplus =
+      surplus_behind(frame.nodes,
+                     {fit.axis, fit.from_m + trim_m, fit.to_m - trim_m, level_behind(fit)},
+                     params_.test) /
+      fit.sum.weight;
   find_radius(frame, bar, fit);
   find_sag(frame, bar, fit);
   if (rails.left != nullptr) out.tilt_sin = std::abs(d.dot(rails.left->axis.direction));
@@ -271,11 +279,14 @@ void BarMeasurement::find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) c
   fit.out.bend_tan = 2.0 * fit.out.sag_m / (length_m * (1.0 - 2.0 * kMargin) / 3.0);
 }
 
+Eigen::Vector3d BarMeasurement::level_behind(const Fit& fit) {
+  return unit({fit.depth.x(), fit.depth.y(), 0.0}, Eigen::Vector3d::UnitX());
+}
+
 double BarMeasurement::weight_behind(const BarNodes& nodes, const Fit& fit) const {
   const LadderTestParams& p = params_.test;
   const Eigen::Vector3d& d = fit.axis.direction;
-  const Eigen::Vector3d behind =
-      unit({fit.depth.x(), fit.depth.y(), 0.0}, Eigen::Vector3d::UnitX());
+  const Eigen::Vector3d behind = level_behind(fit);
   const double rise_m = std::abs(d.z()) * std::max(-fit.from_m, fit.to_m) + p.deep_half_height_m;
   const double z_m = fit.axis.origin_m.z();
   const BarNodes::Range range = nodes.between(z_m - rise_m, z_m + rise_m);

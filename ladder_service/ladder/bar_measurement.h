@@ -68,6 +68,7 @@ class BarMeasurement {
   void find_ends(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
   void find_radius(const BarFrame& frame, const Bar& bar, Fit& fit) const;
   void find_sag(const BarFrame& frame, const Bar& bar, Fit& fit) const;
+  static Eigen::Vector3d level_behind(const Fit& fit);
   double weight_behind(const BarNodes& nodes, const Fit& fit) const;
   void mark_stretches(const BarFrame& frame, const Bar& bar, const Between& rails, Fit& fit) const;
 

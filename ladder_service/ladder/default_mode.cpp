@@ -8,7 +8,7 @@
 namespace ladder {
 
 DefaultMode::DefaultMode(const LadderParams& params)
-    : params_(params), detector_(params), tracker_(params), confirmation_(params) {
+    : params_(params), detector_(params), tracker_(params), confirmation_(params), treads_(params) {
   order_.reserve(params.max_tracks);
 }
 
@@ -16,6 +16,7 @@ void DefaultMode::reset() {
   detector_.reset();
   tracker_.reset();
   confirmation_.reset();
+  treads_.reset();
 }
 
 void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
@@ -24,6 +25,8 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
   tracker_.update(found.bars);
   const std::vector<BarTrack>& tracks = tracker_.tracks();
   estimate.state = confirmation_.update(found, tracks);
+  if (found.is_ladder) treads_.learn(found.bars);
+  if (!found.is_ladder && estimate.state == LadderState::kNone) treads_.reset();
   const bool confirmed = estimate.state == LadderState::kConfirmed;
   estimate.spacing_m = confirmation_.spacing().spacing_m;
   estimate.spacing_sigma_m = confirmation_.spacing().sigma_m;
@@ -45,7 +48,7 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
     const bool is_known = track.wander_m() <= params_.affordance.max_wander_m &&
                           side_sigma_m <= params_.affordance.max_side_sigma_m;
     surfaces.push_back({track.bar.seen, track.bar.attached, track.bar.tilt_sin,
-                        margin_m(track, side_sigma_m), is_known});
+                        margin_m(track, side_sigma_m), is_known, treads_.has_treads()});
   }
   write_rails(found, estimate, rails);
 }

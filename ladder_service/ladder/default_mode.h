@@ -11,6 +11,7 @@
 #include "ladder/estimate.h"
 #include "ladder/ladder_confirmation.h"
 #include "ladder/params.h"
+#include "ladder/tread_test.h"
 
 namespace ladder {
 
@@ -37,6 +38,7 @@ class DefaultMode {
   BarDetector detector_;
   BarTracker tracker_;
   LadderConfirmation confirmation_;
+  TreadTest treads_;
   std::vector<int> order_;
 };
 

@@ -37,7 +37,8 @@ enum class Reason : std::uint8_t {
   kOtherRungTooNear = 5,
   kDamaged = 6,   ///< stub, bent, sagged
   kTooShort = 7,  ///< shorter than the gripper is wide
-  kNotSeen = 8    ///< no measurement supports this stretch
+  kNotSeen = 8,   ///< no measurement supports this stretch
+  kTooDeep = 9    ///< a tread: no claw closes round a board
 };
 
 struct Rung {

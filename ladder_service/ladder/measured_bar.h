@@ -29,7 +29,9 @@ struct MeasuredBar {
   double bend_tan = 0.0;  ///< of the angle between its halves
   double tilt_sin = 0.0;  ///< of the angle off the right angle to the rails
   double deep = 0.0;      ///< points behind it at its height / own points
+  double surplus = 0.0;   ///< points closely behind it less those before it / own points
   bool on_ladder = false;
+  bool is_wide = false;      ///< found at the wide half height
   bool is_alike = false;     ///< its radius is that of the ladder's rungs
   bool reaches_end0 = true;  ///< false: ends before the rail
   bool reaches_end1 = true;

@@ -82,6 +82,11 @@ struct LadderTestParams {
   double deep_from_m = 0.06;         ///< (recipe)
   double deep_to_m = 0.30;           ///< (recipe)
   double deep_half_height_m = 0.03;  ///< (recipe)
+  // Treads: level boards go on closely behind their front edges, no claw closes round them.
+  double tread_from_m = 0.045;       ///< a claw's bars end before this (own)
+  double tread_to_m = 0.105;         ///< (own)
+  double tread_min_depth_m = 0.008;  ///< of a level surface between them: bars up to 7.2 mm, boards
+                                     ///< 100 mm deep from 12.3 mm on (own)
   // Halves of a broken or V-bent rung.
   double v_height_m = 0.12;         ///< their outer ends differ less along the rails (recipe)
   double v_gap_m = 0.22;            ///< their inner ends are this near (recipe)

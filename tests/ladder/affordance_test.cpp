@@ -77,7 +77,7 @@ TEST(Affordance, OffersTheMiddleOfASoundRung) {
   EXPECT_EQ(bench.estimate.grasps[0].confidence, 0.5);
 }
 
-// What is not trusted, too young, damaged or too tilted gets no offer, and says why.
+// What is not trusted, too young, damaged, too tilted or a board gets no offer, and says why.
 TEST(Affordance, RefusesWhatIsNotSound) {
   Bench bench;
   Rung candidate = trusted_rung(0.4, 0.1);
@@ -94,12 +94,16 @@ TEST(Affordance, RefusesWhatIsNotSound) {
   RungSurface tilted = whole_surface();
   tilted.tilt_sin = 0.3;
   bench.add(trusted_rung(0.4, 3.0), tilted);
+  RungSurface tread = whole_surface();
+  tread.is_tread = true;
+  bench.add(trusted_rung(0.4, 3.3), tread);
   bench.find();
   EXPECT_TRUE(bench.estimate.grasps.empty());
-  ASSERT_EQ(bench.estimate.intervals.size(), 6U);
+  ASSERT_EQ(bench.estimate.intervals.size(), 7U);
   EXPECT_EQ(bench.estimate.intervals[0].reason, Reason::kNotTrusted);
   EXPECT_EQ(bench.estimate.intervals[1].reason, Reason::kNotTrusted);
   for (int i = 2; i < 6; ++i) EXPECT_EQ(bench.estimate.intervals[i].reason, Reason::kDamaged);
+  EXPECT_EQ(bench.estimate.intervals[6].reason, Reason::kTooDeep);
 }
 
 // A rail through the middle is kept clear of by the claw and the rail's half width.

@@ -35,6 +35,7 @@ TEST(LadderParams, NamesTheViolatedField) {
   EXPECT_TRUE(names(violated([](auto& p) { p.bar.upright_min_dz = 0.1; }), "bar.upright_min_dz"));
   EXPECT_TRUE(names(violated([](auto& p) { p.test.min_rungs = 2; }), "test.min_rungs"));
   EXPECT_TRUE(names(violated([](auto& p) { p.test.min_spacing_m = 0.5; }), "test.min_spacing_m"));
+  EXPECT_TRUE(names(violated([](auto& p) { p.test.tread_to_m = 0.04; }), "test.tread_from_m"));
   EXPECT_TRUE(
       names(violated([](auto& p) { p.track.trust_evidence = 13; }), "track.trust_evidence"));
   EXPECT_TRUE(names(violated([](auto& p) { p.affordance.step_m = 0.0; }), "affordance.step_m"));

@@ -331,7 +331,7 @@ void fill_affordances(ladder_msgs::ladder_t& m, Rng& rng) {
     m.grasp_rung.push_back(rung);
   }
   m.num_intervals = 2 * m.num_rungs;
-  resize_integers(m.interval_reason, m.num_intervals, rng, m.REASON_NONE, m.REASON_NOT_SEEN);
+  resize_integers(m.interval_reason, m.num_intervals, rng, m.REASON_NONE, m.REASON_TOO_DEEP);
   const int n = m.num_grasps = m.num_rungs;
   resize_positions({&m.grasp_x_m, &m.grasp_y_m, &m.grasp_z_m}, n, rng);
   m.grasp_approach_x.assign(static_cast<std::size_t>(n), 0.8F);

@@ -267,7 +267,7 @@ TEST(SemanticChecks, LadderAffordances) {
   EXPECT_REFUSED(ladder_t, m.interval_from_m[1] = kNan);
   EXPECT_REFUSED(ladder_t, m.interval_from_m[1] = m.interval_from_m[0]);
   EXPECT_REFUSED(ladder_t, m.interval_rung[0] = 1);
-  EXPECT_REFUSED(ladder_t, m.interval_reason[0] = 9);
+  EXPECT_REFUSED(ladder_t, m.interval_reason[0] = m.REASON_TOO_DEEP + 1);
   EXPECT_REFUSED(ladder_t, m.grasp_rung[0] = m.num_rungs);
   EXPECT_REFUSED(ladder_t, m.grasp_rung[1] = m.grasp_rung[0]);
   EXPECT_REFUSED(ladder_t, m.grasp_x_m[0] = kNan);

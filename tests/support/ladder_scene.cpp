@@ -43,7 +43,7 @@ std::vector<Point> draw_points(const std::vector<Surface>& surfaces, const Ladde
   for (const Surface& s : surfaces) {
     const double area_m2 = (s.end1_m - s.end0_m).norm() * s.height_m;
     const double per_m2 = s.plane < 0 ? scene.points_per_m2 : 0.05 * scene.points_per_m2;
-    for (int i = 0; i < static_cast<int>(area_m2 * per_m2); ++i) {
+    for (int i = 0; i < static_cast<int>(s.density * area_m2 * per_m2); ++i) {
       Point point;
       point.head = static_cast<int>(rng.below(ladder::kNumHeads));
       point.plane = s.plane;
@@ -166,6 +166,15 @@ void LadderScene::add_shelf_board(const Vector3d& end0_m, const Vector3d& end1_m
   surfaces_.push_back({end0_m + half, end1_m + half, away, depth_m, false, -1});
 }
 
+void LadderScene::add_tread(const Vector3d& end0_m, const Vector3d& end1_m, double height_m,
+                            double depth_m) {
+  add_board(end0_m, end1_m, height_m);
+  const Vector3d view = 0.5 * (end0_m + end1_m) - kHeads_m[0];
+  const Vector3d seen_face(0.0, 0.0, std::copysign(0.5 * height_m, -view.z()));
+  add_shelf_board(end0_m + seen_face, end1_m + seen_face, depth_m);
+  surfaces_.back().density = std::abs(view.z()) / std::hypot(view.x(), view.y());
+}
+
 void LadderScene::add_front(double x_m, double half_width_m, double from_z_m, double to_z_m,
                             bool as_plane) {
   const double z_m = 0.5 * (from_z_m + to_z_m);
@@ -218,7 +227,9 @@ void LadderScene::add_ladder(const LadderShape& shape) {
     const Vector3d right = at(-half_m, z_m);
     const bool is_damaged = i == shape.stub_rung || i == shape.bent_rung || i == shape.tilted_rung;
     truth.push_back({left, right, !is_damaged});
-    if (i == shape.stub_rung) {
+    if (shape.tread_depth_m > 0.0) {
+      add_tread(left, right, shape.rung_diameter_m, shape.tread_depth_m);
+    } else if (i == shape.stub_rung) {
       add_bar(left, at(-0.2 * half_m, z_m), shape.rung_diameter_m);
     } else if (i == shape.tilted_rung) {
       add_bar(left, at(-half_m, z_m - 0.05), shape.rung_diameter_m);

@@ -22,7 +22,8 @@ struct Surface {
   Eigen::Vector3d across = Eigen::Vector3d::UnitZ();  ///< direction of the height of a flat one
   double height_m = 0.028;                            ///< diameter of a round one
   bool is_round = false;
-  int plane = -1;  ///< index of the plane it belongs to, -1 = off every plane
+  int plane = -1;        ///< index of the plane it belongs to, -1 = off every plane
+  double density = 1.0;  ///< of its points; less where it is seen at a flat angle
 };
 
 struct RungTruth {
@@ -38,13 +39,14 @@ struct LadderShape {
   double clear_width_m = 0.40;
   double rung_diameter_m = 0.028;
   double rail_width_m = 0.010;
-  double distance_m = 1.0;  ///< from the body, along x
-  double yaw_rad = 0.0;     ///< of the ladder's plane
-  double tilt_rad = 0.0;    ///< top away from the robot
-  int missing_rung = -1;    ///< index, -1 = none
-  int stub_rung = -1;       ///< reaches only 60 % from the left rail
-  int bent_rung = -1;       ///< right end 70 mm low, sags 50 mm
-  int tilted_rung = -1;     ///< right end 50 mm low
+  double distance_m = 1.0;     ///< from the body, along x
+  double yaw_rad = 0.0;        ///< of the ladder's plane
+  double tilt_rad = 0.0;       ///< top away from the robot
+  int missing_rung = -1;       ///< index, -1 = none
+  int stub_rung = -1;          ///< reaches only 60 % from the left rail
+  int bent_rung = -1;          ///< right end 70 mm low, sags 50 mm
+  int tilted_rung = -1;        ///< right end 50 mm low
+  double tread_depth_m = 0.0;  ///< > 0: level boards so deep instead of rungs
 };
 
 class LadderScene {
@@ -58,6 +60,9 @@ class LadderScene {
   /// A flat strip lying level, going `depth_m` away from the robot.
   void add_shelf_board(const Eigen::Vector3d& end0_m, const Eigen::Vector3d& end1_m,
                        double depth_m);
+  /// A level board: its front edge, and its top or underside as the heads see it.
+  void add_tread(const Eigen::Vector3d& end0_m, const Eigen::Vector3d& end1_m, double height_m,
+                 double depth_m);
   /// An upright rectangle across the x axis; as a plane known to the segmentation or not.
   void add_front(double x_m, double half_width_m, double from_z_m, double to_z_m, bool as_plane);
   void add_stairs(double x_m, int num_steps);
