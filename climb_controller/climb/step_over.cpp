@@ -12,6 +12,8 @@ namespace {
 constexpr double kFarthestPlace_m = 0.30;  ///< of the body from the middle of its feet
 constexpr double kBetweenPlaces_m = 0.02;
 constexpr double kWellWithin_rad = 0.4;  ///< of every joint limit: more is no better
+/// Told angles are ahead of the measured ones by what the legs give way: a shift needs that much.
+constexpr double kReserve_rad = 0.2;
 constexpr double kUnusual_rad_m = 0.2;   ///< ... and so much less is as good, per metre nearer
 
 /// Another place of the body, or the next rung but one, may be the answer.
@@ -83,9 +85,10 @@ PlannedStep StepPlanner::from_best_place(const PlannedStep& refused, bool may_sh
       margin_rad = std::min(margin_rad, kinematics_.limit_margin_rad(leg, angles_rad));
     }
     const double worth = margin_rad - kUnusual_rad_m * std::abs(ahead_m - usual_m);
-    if (!all_bend(*stance) || (best.ready && worth <= best_worth)) continue;
+    const bool is_within = move.is_none() || margin_rad >= kReserve_rad;
+    if (!is_within || !all_bend(*stance) || (best.ready && worth <= best_worth)) continue;
     const SupportVerdict verdict = support_.check_without(*stance, refused.leg);
-    if (!(verdict.margin >= params_.support.min_margin)) continue;
+    if (!support_.is_ample(verdict)) continue;
     best = step;
     best.move = move;
     best_worth = worth;

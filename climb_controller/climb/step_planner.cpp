@@ -214,7 +214,7 @@ PlannedStep StepPlanner::next(bool upwards, bool may_shift, const RobotNow& now,
     return step;
   }
   const SupportVerdict verdict = support_.check_without(now.stance, step.leg);
-  if (!(verdict.margin >= params_.support.min_margin)) {
+  if (!support_.is_ample(verdict)) {
     step.burden = verdict.burden == Burden::kBorne ? Burden::kGrip : verdict.burden;
     return step;
   }

@@ -12,6 +12,8 @@
 namespace climb {
 namespace {
 
+constexpr double kMarginSlack = 0.01;
+
 constexpr double kMaxUnitError = 1e-3;
 
 bool valid(const Stance& stance) {
@@ -186,6 +188,10 @@ SupportVerdict Support::check_without(const Stance& stance, Leg lifted) const {
   Stance remaining = stance;
   remaining.contacts[lifted].weight = 0.0;
   return check(remaining);
+}
+
+bool Support::is_ample(const SupportVerdict& verdict) const {
+  return verdict.margin >= params_.min_margin - kMarginSlack;
 }
 
 RungLoss Support::check_rung_loss(const Stance& stance) const {

@@ -83,6 +83,10 @@ class Support {
   /// check() without one leg, whose contact is taken away: may it be lifted?
   SupportVerdict check_without(const Stance& stance, Leg lifted) const;
 
+  /// With the margin that a limb may be lifted with. Bounded forces come near it from below: a
+  /// hundredth less is enough.
+  bool is_ample(const SupportVerdict& verdict) const;
+
   /// Every rung in turn taken away with all claws on it.
   RungLoss check_rung_loss(const Stance& stance) const;
 
