@@ -152,6 +152,7 @@ bool Controller::obey_climb(bool upwards) {
   if (!finishes) {
     planner_.forget_vain();
     num_withdrawn_ = 0;
+    steps_over_ = false;
   }
   ending_ = ahead == Reaction::kNothing ? Ending::kNone : Ending::kNow;
   return true;

@@ -76,7 +76,9 @@ class Controller {
   bool prove_grasps();
   void refuse_if_late();
   bool begin_shift(const PerLeg<LegAngles>& told_rad, const PerLeg<LegAngles>& measured_rad);
-  bool looks_again();
+  bool looks_again(const ControllerInput& input);
+  /// Than the one that plan_ is refused: over a rung, from another place.
+  PlannedStep other_way(const ControllerInput& input);
   bool end_step(const ControllerInput& input);
   bool ends_here(const RobotNow& now) const;
   Retry retry_of(Leg leg, const ControllerInput& input) const;
@@ -138,6 +140,7 @@ class Controller {
   bool withdrawn_ = false;      ///< its target is gone
   bool is_vain_ = false;        ///< ... or does not hold
   bool may_step_over_ = false;  ///< what is no rung to grasp, after looking at it for a while
+  bool steps_over_ = false;     ///< ... that was long enough
   bool following_ = false;      ///< targets are sent
   bool began_now_ = false;      ///< to follow, in this cycle: the first targets are as measured
   bool rests_safely_ = false;

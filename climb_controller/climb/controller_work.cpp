@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the controller does in each of its states: boot, arming, climbing step by step, standing.
 #include <algorithm>
+#include <cmath>
 
 #include "climb/controller.h"
 
@@ -11,6 +12,7 @@ using E = ControllerEvent;
 
 namespace {
 
+constexpr double kBetweenTries_s = 0.1;  ///< of another way: a search takes long
 constexpr FaultFlags kFalls = flag(Fault::kFreeFall) | flag(Fault::kTooFewGrasps);
 
 /// Another look at the ladder may tell otherwise.
@@ -178,11 +180,14 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) {
     const bool may_shift = num_shifts_ < params_.max_shifts;
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
-    const auto step_over = [&] { return planner_.over(plan_, may_shift, now, ladder_of(input)); };
-    if (looked_s_ <= 0.0) may_step_over_ = !plan_.ready && step_over().ready;
+    if (looked_s_ <= 0.0) may_step_over_ = !plan_.ready && other_way(input).ready;
     const bool rises = plan_.at_top && !plan_.move.is_none();
-    if (!rises && looks_again()) return;
-    if (!plan_.ready && may_step_over_) plan_ = step_over();
+    const bool is_decided = steps_over_ && may_step_over_;  // before the body was shifted for it
+    if (!rises && !is_decided && looks_again(input)) return;
+    if (!plan_.ready && may_step_over_) {
+      plan_ = other_way(input);
+      steps_over_ = plan_.ready;
+    }
     ends = !plan_.ready && !plan_.at_dock && !rises;
   }
   if (!ends && !plan_.move.is_none()) {
@@ -202,7 +207,12 @@ void Controller::work_climbing(const ControllerInput& input) {
   take(E::kHold);
 }
 
-bool Controller::looks_again() {
+PlannedStep Controller::other_way(const ControllerInput& input) {
+  const bool may_shift = num_shifts_ < params_.max_shifts;
+  return planner_.over(plan_, may_shift, robot_now(input), ladder_of(input));
+}
+
+bool Controller::looks_again(const ControllerInput& input) {
   // What is seen of a rung comes and goes: one that is not good enough just now is looked at for a
   // while; one out of reach, or no ladder at all, is told at once. The top is the top when nothing
   // was seen above it all that time.
@@ -214,6 +224,10 @@ bool Controller::looks_again() {
   was_top_ = plan_.at_top && (was_top_ || looked_s_ <= 0.0);
   looked_s_ += params_.gate.period_s;
   if (looked_s_ < params_.look_again_s) return true;
+  // So does what another way needs.
+  const bool may_wait = may_step_over_ && looked_s_ < 2.0 * params_.look_again_s;
+  const bool is_time = std::fmod(looked_s_, kBetweenTries_s) < params_.gate.period_s;
+  if (may_wait && !(is_time && other_way(input).ready)) return true;
   looked_s_ = 0.0;
   if (plan_.at_top && !was_top_) {
     plan_.at_top = false;
@@ -238,6 +252,7 @@ bool Controller::end_step(const ControllerInput& input) {
   const bool made = !limbs_[plan_.leg].returned();
   if (made) {
     num_shifts_ = num_withdrawn_ = 0;
+    steps_over_ = false;
     if (ending_ == Ending::kAtRest && ++num_steps_to_rest_ >= kNumLegs) ending_ = Ending::kNow;
     planner_.made(plan_.leg, upwards_);
   } else if (withdrawn_ && ++num_withdrawn_ < params_.max_withdrawn) {
