@@ -14,7 +14,7 @@ constexpr double kBetweenPlaces_m = 0.02;
 constexpr double kWellWithin_rad = 0.4;  ///< of every joint limit: more is no better
 /// Told angles are ahead of the measured ones by what the legs give way: a shift needs that much.
 constexpr double kReserve_rad = 0.2;
-constexpr double kUnusual_rad_m = 0.2;   ///< ... and so much less is as good, per metre nearer
+constexpr double kUnusual_rad_m = 0.2;  ///< ... and so much less is as good, per metre nearer
 
 /// Another place of the body, or the next rung but one, may be the answer.
 bool may_be_another_way(const PlannedStep& refused) {
