@@ -181,7 +181,7 @@ std::int64_t reset_at(const CaseRun& run) {
   return run.since_us() >= 600'000 ? run.injected_us() + 600'000 : -1;
 }
 
-constexpr std::array kRows = {
+constexpr std::array kDriveRows = {
     DrillRow{11, "", "servo silent", "hears and sends nothing", "all hold, FAULT_HOLD", after_boot,
              2, silence_servo, nullptr, holds_for_silence, harm_but_for_axis, arm_meanwhile,
              30'000 + kT_us, 600'000},
@@ -232,7 +232,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const DrillRow> rows_of_drives() {
-  return kRows;
+  return kDriveRows;
 }
 
 }  // namespace robot_in_a_box

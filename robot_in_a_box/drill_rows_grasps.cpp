@@ -210,7 +210,7 @@ void break_and_close_touch(CaseRun& run) {
   close_touch(run);
 }
 
-constexpr std::array kRows = {
+constexpr std::array kGraspRows = {
     DrillRow{4, "a", "nothing in reach", "only far rungs are seen", "HOLD, reason told",
              decides_next, 1, see_only_far, decision_due_at, is_refused, harm_to_grasps, nullptr,
              2 * kT_us, 6'000'000},
@@ -261,7 +261,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const DrillRow> rows_of_grasps() {
-  return kRows;
+  return kGraspRows;
 }
 
 }  // namespace robot_in_a_box

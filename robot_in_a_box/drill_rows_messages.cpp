@@ -157,7 +157,7 @@ void flood(CaseRun& run) {
   }
 }
 
-constexpr std::array kRows = {
+constexpr std::array kMessageRows = {
     nonsense_row<Nonsense::kRepeated>(2, "a", "repeated"),
     nonsense_row<Nonsense::kReordered>(2, "b", "reordered"),
     nonsense_row<Nonsense::kOld>(2, "c", "a second old"),
@@ -188,7 +188,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const DrillRow> rows_of_messages() {
-  return kRows;
+  return kMessageRows;
 }
 
 }  // namespace robot_in_a_box

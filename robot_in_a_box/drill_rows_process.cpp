@@ -235,7 +235,7 @@ void fill_disk(CaseRun&) {
   setrlimit(RLIMIT_FSIZE, &none);
 }
 
-constexpr std::array kRows = {
+constexpr std::array kProcessRows = {
     DrillRow{20, "", "controller gone", "kill -9", "drives quick-stop and hold", where_enabled, 1,
              kill_controller, left_alone_at, drives_stop, harm_without_master, nullptr,
              150'000 + kT_us, 800'000},
@@ -291,7 +291,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const DrillRow> rows_of_process() {
-  return kRows;
+  return kProcessRows;
 }
 
 }  // namespace robot_in_a_box

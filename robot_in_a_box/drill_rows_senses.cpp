@@ -58,7 +58,7 @@ void warn_of_heat(CaseRun& run) {
   run.box().plant().warn(run.some_axis(), 0x4310);
 }
 
-constexpr std::array kRows = {
+constexpr std::array kSenseRows = {
     DrillRow{27, "a", "tilt", "20 deg", "FAULT_HOLD", is_armed, 1, tilt, nullptr, holds_for_tilt,
              harm_after_stop, nullptr, 50'000 + kT_us, 500'000},
     DrillRow{27, "b", "free fall", "0 g", "FAULT_HOLD", everywhere, 1, fall, nullptr,
@@ -80,7 +80,7 @@ constexpr std::array kRows = {
 }  // namespace
 
 std::span<const DrillRow> rows_of_senses() {
-  return kRows;
+  return kSenseRows;
 }
 
 }  // namespace robot_in_a_box

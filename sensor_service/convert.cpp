@@ -4,7 +4,7 @@
 namespace sensor_service {
 namespace {
 
-tof::Pose to_pose(const double (&p_m)[3], const double (&q)[4]) {
+tof::Pose pose_of(const double (&p_m)[3], const double (&q)[4]) {
   return {.p_m = {p_m[0], p_m[1], p_m[2]}, .q = {q[0], q[1], q[2], q[3]}};
 }
 
@@ -33,7 +33,7 @@ tof::DepthFrame to_depth_frame(const ladder_msgs::tof_frame_t& message) {
   frame.range_min_m = message.range_min_m;
   frame.range_max_m = message.range_max_m;
   frame.wrap_range_m = message.wrap_range_m;
-  frame.T_body_head = to_pose(message.p_body_head_m, message.q_body_head);
+  frame.T_body_head = pose_of(message.p_body_head_m, message.q_body_head);
   frame.depth_mm = message.depth_mm;
   frame.confidence = message.confidence;
   return frame;
@@ -48,7 +48,7 @@ tof::ImuSample to_imu_sample(const ladder_msgs::imu_t& message) {
 }
 
 tof::Pose to_pose(const ladder_msgs::pose_t& message) {
-  return to_pose(message.p_odom_body_m, message.q_odom_body);
+  return pose_of(message.p_odom_body_m, message.q_odom_body);
 }
 
 std::optional<tof::JointAngles> to_joints(const ladder_msgs::climb_state_t& message) {

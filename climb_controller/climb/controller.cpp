@@ -4,9 +4,10 @@
 #include "base/check.h"
 
 namespace climb {
-namespace {
 
 using S = ControllerState;
+
+namespace {
 using E = ControllerEvent;
 
 /// Judgements on what was going on: with the reset they are over, and arming looks anew.

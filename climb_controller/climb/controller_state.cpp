@@ -2,9 +2,11 @@
 #include "climb/controller_state.h"
 
 namespace climb {
-namespace {
 
 using S = ControllerState;
+
+namespace {
+
 using E = ControllerEvent;
 
 constexpr ControllerTransition kTransitions[] = {

@@ -7,18 +7,18 @@
 namespace climb {
 namespace {
 
-constexpr Reaction none = Reaction::kNothing;
-constexpr Reaction block = Reaction::kBlock;
-constexpr Reaction step = Reaction::kFinishStep;
-constexpr Reaction prot = Reaction::kProtectiveHold;
-constexpr Reaction hold = Reaction::kFaultHold;
-constexpr Reaction stop = Reaction::kEstop;
-
 using F = Fault;
 
 // In FAULT_HOLD and ESTOP only an E-stop still changes anything: the first reason stays.
-// clang-format off
-constexpr std::array<FailsafeRow, kNumFaults> kTable = {{
+constexpr std::array<FailsafeRow, kNumFaults> make_table() {
+  constexpr Reaction none = Reaction::kNothing;
+  constexpr Reaction block = Reaction::kBlock;
+  constexpr Reaction step = Reaction::kFinishStep;
+  constexpr Reaction prot = Reaction::kProtectiveHold;
+  constexpr Reaction hold = Reaction::kFaultHold;
+  constexpr Reaction stop = Reaction::kEstop;
+  // clang-format off
+  return {{
     // fault                name                    unpowered arming standing climbing latched  silent close claws
     {F::kEstop,            "E-stop",                 stop,  stop,  stop,  stop,  stop,          false, false},
     {F::kLinesLost,        "lines lost",             stop,  stop,  stop,  stop,  stop,          false, false},
@@ -46,8 +46,11 @@ constexpr std::array<FailsafeRow, kNumFaults> kTable = {{
     {F::kTerminate,        "terminate",              block, block, none,  step,  none,          false, false},
     {F::kServoWarning,     "servo warning",          block, block, none,  step,  none,          false, false},
     {F::kPerceptionSilent, "perception silent",      none,  none,  none,  prot,  none,          false, false},
-}};
-// clang-format on
+  }};
+  // clang-format on
+}
+
+constexpr std::array<FailsafeRow, kNumFaults> kTable = make_table();
 
 constexpr StateGroup kGroups[kNumControllerStates] = {
     StateGroup::kUnpowered,  // BOOT

@@ -3,11 +3,12 @@
 
 #include <cmath>
 
+#include "climb/unit.h"
+
 namespace climb {
 namespace {
 
 constexpr int kMaxBehind = 2;
-constexpr double kMaxUnitError = 1e-3;  // of a quaternion's norm
 
 Eigen::Vector3d up_of(const ImuReading& imu) {
   return imu.q_odom_body.conjugate() * Eigen::Vector3d::UnitZ();
@@ -16,8 +17,7 @@ Eigen::Vector3d up_of(const ImuReading& imu) {
 }  // namespace
 
 bool is_sound(const ImuReading& imu) {
-  const double unit_error = std::abs(imu.q_odom_body.norm() - 1.0);  // NaN fails below
-  return imu.valid && unit_error <= kMaxUnitError && std::isfinite(imu.acceleration_m_s2);
+  return imu.valid && is_unit(imu.q_odom_body) && std::isfinite(imu.acceleration_m_s2);
 }
 
 std::string check(const WatchParams& p) {

@@ -12,7 +12,7 @@
 namespace climb {
 namespace {
 
-constexpr double kMaxUnitError = 1e-3;
+constexpr double kMaxFrameError = 1e-3;
 constexpr double kMinAcross = 0.5;        ///< a rung lies across the body: cosine to the body's y
 constexpr double kAmpleMargin_rad = 0.5;  ///< more joint margin than this costs no less
 
@@ -26,7 +26,7 @@ bool finite(const GraspQuery& query) {
   if (query.avoid_m && !query.avoid_m->allFinite()) return false;
   if (!query.from_m.allFinite() || !(query.body_sigma_m >= 0.0)) return false;
   const Eigen::Matrix3d R = query.T_odom_body.linear();
-  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= kMaxUnitError)) return false;
+  if (!((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() <= kMaxFrameError)) return false;
   for (const HeldPoint& held : query.held) {
     if (held.holds && !held.position_m.allFinite()) return false;
   }

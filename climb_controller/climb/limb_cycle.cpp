@@ -6,8 +6,6 @@
 namespace climb {
 namespace {
 
-using S = LimbState;
-
 /// No number of perception's; another for each leg.
 constexpr int kFeltRungId = -2;
 
@@ -26,7 +24,7 @@ LimbCycle::LimbCycle(const RobotParams& robot, const MotionParams& motion, const
 void LimbCycle::reset(const LimbInput& measured, Hold hold) {
   const bool holds = hold != Hold::kNone;
   input_ = measured;
-  state_ = holds ? S::kLoaded : S::kPregrasp;
+  state_ = holds ? LimbState::kLoaded : LimbState::kPregrasp;
   target_ = {measured.angles_rad, LegAngles::Zero(), measured.claw.jaw_rad, holds ? 1.0 : 0.0};
   jaw_goal_rad_ = holds ? claw_.closed_rad : measured.claw.jaw_rad;  // nothing opens unasked
   moves_ = parks_ = wants_goal_ = failed_ = is_jaw_forced_ = false;
@@ -56,24 +54,25 @@ void LimbCycle::forget_tries() {
 }
 
 bool LimbCycle::begin(const LimbGoal& goal) {
-  const bool is_free = state_ == S::kPregrasp && !moves_;
-  const bool may_begin = !failed_ && (state_ == S::kLoaded || is_free);
+  const bool is_free = state_ == LimbState::kPregrasp && !moves_;
+  const bool may_begin = !failed_ && (state_ == LimbState::kLoaded || is_free);
   if (!may_begin) return false;
   follow_body();
   remember_home();
   goal_ = goal;
   moves_ = true;
   forget_tries();
-  if (state_ == S::kLoaded) return take(LimbEvent::kLift);
+  if (state_ == LimbState::kLoaded) return take(LimbEvent::kLift);
   // Where it stands after a reset: round a rung perhaps, then it is verified there; half closed,
   // then it opens before it moves.
-  if (!is_open(input_)) state_ = confirmation_.witness().jaw ? S::kClosing : S::kRegrasp;
-  enter(S::kPregrasp);
+  if (!is_open(input_))
+    state_ = confirmation_.witness().jaw ? LimbState::kClosing : LimbState::kRegrasp;
+  enter(LimbState::kPregrasp);
   return true;
 }
 
 bool LimbCycle::prove() {
-  if (state_ != S::kLoaded || moves_ || failed_) return false;
+  if (state_ != LimbState::kLoaded || moves_ || failed_) return false;
   follow_body();
   remember_home();
   goal_ = *home_;
@@ -83,14 +82,14 @@ bool LimbCycle::prove() {
 }
 
 bool LimbCycle::park() {
-  if (state_ != S::kLoaded || !begin({})) return false;
+  if (state_ != LimbState::kLoaded || !begin({})) return false;
   parks_ = true;
   return true;
 }
 
 void LimbCycle::remember_home() {
   home_.reset();
-  if (state_ != S::kLoaded) return;
+  if (state_ != LimbState::kLoaded) return;
   const Eigen::Vector3d held_m = kinematics_.foot_m(leg_, input_.angles_rad);
   const Eigen::Vector3d out_m =
       motion_.pregrasp_m * kinematics_.retract_direction(leg_, input_.angles_rad);
@@ -113,50 +112,50 @@ void LimbCycle::enter(LimbState from) {
   follow_body();
   const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
   switch (state_) {
-    case S::kUnloading:
+    case LimbState::kUnloading:
       return move_joints(input_.angles_rad, motion_.unload_s);
-    case S::kReleasing:
+    case LimbState::kReleasing:
       jaw_goal_rad_ = claw_.open_rad;
       return;
-    case S::kRetracting:
+    case LimbState::kRetracting:
       return move_foot(
           foot_m + motion_.retract_m * kinematics_.retract_direction(leg_, target_.angles_rad),
           motion_.retract_m_s);
-    case S::kTransit:
+    case LimbState::kTransit:
       if (goal_.is_beyond) return go_past();
       return move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
-    case S::kPregrasp:
-      if (parks_ || from == S::kLoaded) return stand_free();
+    case LimbState::kPregrasp:
+      if (parks_ || from == LimbState::kLoaded) return stand_free();
       jaw_goal_rad_ = claw_.open_rad;
       stage_ = way_out_m_ ? Stage::kOut : Stage::kOver;
       return move_foot(way_out_m_.value_or(aimed_m(goal_.pregrasp_m)), motion_.transit_m_s);
-    case S::kApproach:
+    case LimbState::kApproach:
       way_out_m_ = foot_m;
       torques_before_Nm_ = input_.torques_Nm;
       return move_foot(aimed_m(goal_.grasp_m), motion_.approach_m_s);
-    case S::kClosing:
-      if (from == S::kReleasing) stay_home();  // opened a little and closed again
+    case LimbState::kClosing:
+      if (from == LimbState::kReleasing) stay_home();  // opened a little and closed again
       if (is_first_try()) spent_s_ = 0.0;
       torques_before_Nm_ = input_.torques_Nm;
       jaw_goal_rad_ = claw_.closed_rad;
       return;
-    case S::kVerify:
+    case LimbState::kVerify:
       unpulled_rad_ = input_.angles_rad;
       pulled_from_m_ = input_.T_odom_body * kinematics_.foot_m(leg_, input_.angles_rad);
       // What the closing jaw already draws on the rung counts: it adds to the pull.
-      if (from != S::kClosing) torques_before_Nm_ = input_.torques_Nm;
+      if (from != LimbState::kClosing) torques_before_Nm_ = input_.torques_Nm;
       // So does what a claw bears that was found loaded.
-      if (from == S::kLoaded) torques_before_Nm_.setZero();
+      if (from == LimbState::kLoaded) torques_before_Nm_.setZero();
       return move_foot(foot_m + Eigen::Vector3d(0.0, 0.0, motion_.pull_test_m), pull_m_s());
-    case S::kLoading:
-      if (from == S::kVerify) {
+    case LimbState::kLoading:
+      if (from == LimbState::kVerify) {
         // What was pulled is let go: legs that pull against each other turn the body.
         stage_ = Stage::kSlowing;
         return move_joints(unpulled_rad_, 0.5 * motion_.pull_s);
       }
       stay_home();
       return move_joints(input_.angles_rad, motion_.load_s);  // re-reference: never a step
-    case S::kLoaded:
+    case LimbState::kLoaded:
       moves_ = parks_ = proves_ = false;
       way_out_m_.reset();
       target_.weight = 1.0;
@@ -164,17 +163,17 @@ void LimbCycle::enter(LimbState from) {
       held_rung_id_ = goal_.rung_id;
       lost_rung_id_ = -1;
       return;
-    case S::kRegrasp:
+    case LimbState::kRegrasp:
       ++num_tries_;
       failed_ = failed_ || needs_proof_;  // what held when nobody watched is not opened
       target_.weight = 0.0;
       jaw_goal_rad_ = claw_.open_rad;
       return;
-    case S::kAbortReturn:
+    case LimbState::kAbortReturn:
       jaw_goal_rad_ = claw_.open_rad;
       stage_ = Stage::kSlowing;  // along the path that it is on
       return;
-    case S::kSupportLost:
+    case LimbState::kSupportLost:
       target_.weight = 0.0;
       moves_ = parks_ = false;
       lost_rung_id_ = held_rung_id_;
@@ -197,48 +196,48 @@ void LimbCycle::step(const LimbInput& input) {
 void LimbCycle::work(const LimbInput& input) {
   const bool arrived = advance(input);
   switch (state_) {
-    case S::kLoaded:
+    case LimbState::kLoaded:
       // What closes on nothing never held.
       if (confirmation_.holds()) is_guess_ = false;
       if (has_lost(input)) take(is_guess_ ? LimbEvent::kMissed : LimbEvent::kLost);
       return;
-    case S::kUnloading:
+    case LimbState::kUnloading:
       target_.weight = 1.0 - path_part();
       if (has_lost(input))
         take(LimbEvent::kLost);
       else if (arrived)
         work_release(input, arrived);
       return;
-    case S::kReleasing:
+    case LimbState::kReleasing:
       return work_release(input, arrived);
-    case S::kRetracting:
+    case LimbState::kRetracting:
       if (arrived) take(parks_ ? LimbEvent::kPark : LimbEvent::kDone);
       return;
-    case S::kTransit:
+    case LimbState::kTransit:
       return work_transit(arrived);
-    case S::kApproach:
+    case LimbState::kApproach:
       if (arrived)
         take(LimbEvent::kDone);
       else
         feel_bump(input);
       return;
-    case S::kPregrasp:
+    case LimbState::kPregrasp:
       return work_pregrasp(input, arrived);
-    case S::kClosing:
+    case LimbState::kClosing:
       return finish_closing(input);
-    case S::kVerify:
+    case LimbState::kVerify:
       return pull(input, arrived);
-    case S::kLoading:
+    case LimbState::kLoading:
       if (has_lost(input))
         take(LimbEvent::kLost);
       else
         load(input, arrived);
       return;
-    case S::kRegrasp:
+    case LimbState::kRegrasp:
       return work_regrasp(input);
-    case S::kAbortReturn:
+    case LimbState::kAbortReturn:
       return return_home(input, arrived);
-    case S::kSupportLost:
+    case LimbState::kSupportLost:
       return;
   }
 }
@@ -250,7 +249,7 @@ bool LimbCycle::has_lost(const LimbInput& input) const {
 
 void LimbCycle::work_release(const LimbInput& input, bool arrived) {
   if (input.stop) return;
-  if (state_ == S::kUnloading) {
+  if (state_ == LimbState::kUnloading) {
     // The jaw opens only while the three others hold in this very cycle (invariant 3).
     if (arrived && input.others_hold)
       take(LimbEvent::kDone);
@@ -317,19 +316,20 @@ void LimbCycle::give_up() {
 void LimbCycle::put_down(const LimbGoal& goal) {
   is_jaw_forced_ = false;
   spent_s_ = 0.0;
-  if (state_ == S::kRegrasp && confirmation_.witness().jaw) {
+  if (state_ == LimbState::kRegrasp && confirmation_.witness().jaw) {
     take(LimbEvent::kAbort);  // round its rung still: it closes again
     return;
   }
-  const bool is_coming = state_ == S::kApproach && goal.rung_id == goal_.rung_id;
-  const bool is_at_rung = state_ == S::kClosing || state_ == S::kVerify || state_ == S::kLoading;
+  const bool is_coming = state_ == LimbState::kApproach && goal.rung_id == goal_.rung_id;
+  const bool is_at_rung = state_ == LimbState::kClosing || state_ == LimbState::kVerify ||
+                          state_ == LimbState::kLoading;
   if (!moves_ || is_coming || is_at_rung) return;
-  const bool is_on_its_rung = state_ == S::kUnloading || state_ == S::kReleasing;
+  const bool is_on_its_rung = state_ == LimbState::kUnloading || state_ == LimbState::kReleasing;
   follow_body();
   if (!is_on_its_rung) home_ = goal;
   returned_ = false;
-  if (state_ == S::kAbortReturn)
-    enter(S::kAbortReturn);
+  if (state_ == LimbState::kAbortReturn)
+    enter(LimbState::kAbortReturn);
   else if (!take(LimbEvent::kAbort))
     take(LimbEvent::kGiveUp);
 }
@@ -354,8 +354,8 @@ void LimbCycle::finish_closing(const LimbInput& input) {
 
 void LimbCycle::keep_budget() {
   if (!moves_ || failed_ || !is_over_budget()) return;
-  const bool is_searching =
-      state_ == S::kTransit || state_ == S::kPregrasp || state_ == S::kApproach;
+  const bool is_searching = state_ == LimbState::kTransit || state_ == LimbState::kPregrasp ||
+                            state_ == LimbState::kApproach;
   if (!is_searching) return;  // a rung in the claw is verified; everything else is short
   if (!home_ || returned_ || !take(LimbEvent::kAbort)) failed_ = true;
 }
@@ -371,7 +371,7 @@ void LimbCycle::stay_home() {
 
 bool LimbCycle::must_stay_closed(const LimbInput& input) const {
   // Not confirmed, but round something: on fewer than three others it is not let go (invariant 3).
-  return state_ == S::kRegrasp && !input.others_hold && !input.docked &&
+  return state_ == LimbState::kRegrasp && !input.others_hold && !input.docked &&
          confirmation_.witness().jaw;
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 
+#include "base/within.h"
 #include "climb/limb_cycle.h"
 
 namespace climb {
@@ -14,16 +15,13 @@ constexpr double kOpenWindow_rad = 0.1;
 constexpr double kGiveWayPart = 0.03;
 constexpr double kYieldPart = 0.3;  ///< of what pushes it aside, each cycle
 
-bool in(double value, double low, double high) {  // false for NaN
-  return value >= low && value <= high;
-}
-
 }  // namespace
 
 std::string check(const LimbParams& p) {
-  if (!in(p.jaw_speed_rad_s, 0.1, 100.0)) return "limb.jaw_speed_rad_s must be 0.1..100";
-  const bool times_ok = in(p.close_timeout_s, 0.1, 60.0) && in(p.open_timeout_s, 0.1, 60.0) &&
-                        in(p.others_timeout_s, 0.0, 60.0) && in(p.budget_s, 0.1, 600.0);
+  if (!base::within(p.jaw_speed_rad_s, 0.1, 100.0)) return "limb.jaw_speed_rad_s must be 0.1..100";
+  const bool times_ok =
+      base::within(p.close_timeout_s, 0.1, 60.0) && base::within(p.open_timeout_s, 0.1, 60.0) &&
+      base::within(p.others_timeout_s, 0.0, 60.0) && base::within(p.budget_s, 0.1, 600.0);
   if (!times_ok) {
     return "limb: close_timeout_s and open_timeout_s must be 0.1..60, others_timeout_s 0..60, "
            "budget_s 0.1..600";
@@ -31,8 +29,8 @@ std::string check(const LimbParams& p) {
   if (!(p.max_tries >= 1 && p.max_tries_elsewhere >= 1)) {
     return "limb: max_tries and max_tries_elsewhere must be above 0";
   }
-  if (!in(p.try_offset_m, 0.0, 0.1)) return "limb.try_offset_m must be 0..0.1";
-  if (!in(p.empty_window_rad, 0.0, 1.0)) return "limb.empty_window_rad must be 0..1";
+  if (!base::within(p.try_offset_m, 0.0, 0.1)) return "limb.try_offset_m must be 0..0.1";
+  if (!base::within(p.empty_window_rad, 0.0, 1.0)) return "limb.empty_window_rad must be 0..1";
   return "";
 }
 

@@ -4,47 +4,46 @@
 namespace climb {
 namespace {
 
-using S = LimbState;
 using E = LimbEvent;
 
 constexpr LimbTransition kTransitions[] = {
-    {S::kLoaded, E::kLift, S::kUnloading},
-    {S::kUnloading, E::kDone, S::kReleasing},
-    {S::kReleasing, E::kDone, S::kRetracting},
-    {S::kRetracting, E::kDone, S::kTransit},
-    {S::kTransit, E::kDone, S::kPregrasp},
-    {S::kPregrasp, E::kDone, S::kApproach},
-    {S::kApproach, E::kDone, S::kClosing},
-    {S::kClosing, E::kDone, S::kVerify},
-    {S::kVerify, E::kDone, S::kLoading},
-    {S::kLoading, E::kDone, S::kLoaded},
+    {LimbState::kLoaded, E::kLift, LimbState::kUnloading},
+    {LimbState::kUnloading, E::kDone, LimbState::kReleasing},
+    {LimbState::kReleasing, E::kDone, LimbState::kRetracting},
+    {LimbState::kRetracting, E::kDone, LimbState::kTransit},
+    {LimbState::kTransit, E::kDone, LimbState::kPregrasp},
+    {LimbState::kPregrasp, E::kDone, LimbState::kApproach},
+    {LimbState::kApproach, E::kDone, LimbState::kClosing},
+    {LimbState::kClosing, E::kDone, LimbState::kVerify},
+    {LimbState::kVerify, E::kDone, LimbState::kLoading},
+    {LimbState::kLoading, E::kDone, LimbState::kLoaded},
 
     // No grasp: again, and then back to the rung that held before.
-    {S::kApproach, E::kMissed, S::kRegrasp},
-    {S::kClosing, E::kMissed, S::kRegrasp},
-    {S::kVerify, E::kMissed, S::kRegrasp},
-    {S::kLoading, E::kLost, S::kRegrasp},
-    {S::kRegrasp, E::kDone, S::kPregrasp},
-    {S::kRegrasp, E::kGiveUp, S::kAbortReturn},
-    {S::kAbortReturn, E::kDone, S::kPregrasp},
+    {LimbState::kApproach, E::kMissed, LimbState::kRegrasp},
+    {LimbState::kClosing, E::kMissed, LimbState::kRegrasp},
+    {LimbState::kVerify, E::kMissed, LimbState::kRegrasp},
+    {LimbState::kLoading, E::kLost, LimbState::kRegrasp},
+    {LimbState::kRegrasp, E::kDone, LimbState::kPregrasp},
+    {LimbState::kRegrasp, E::kGiveUp, LimbState::kAbortReturn},
+    {LimbState::kAbortReturn, E::kDone, LimbState::kPregrasp},
 
     // Withdrawn: while the claw still holds, it is simply loaded again.
-    {S::kUnloading, E::kAbort, S::kLoading},
-    {S::kReleasing, E::kAbort, S::kClosing},
-    {S::kRegrasp, E::kAbort, S::kClosing},  // needed, and not open yet
-    {S::kRetracting, E::kAbort, S::kAbortReturn},
-    {S::kTransit, E::kAbort, S::kAbortReturn},
-    {S::kPregrasp, E::kAbort, S::kAbortReturn},
-    {S::kApproach, E::kAbort, S::kAbortReturn},
+    {LimbState::kUnloading, E::kAbort, LimbState::kLoading},
+    {LimbState::kReleasing, E::kAbort, LimbState::kClosing},
+    {LimbState::kRegrasp, E::kAbort, LimbState::kClosing},  // needed, and not open yet
+    {LimbState::kRetracting, E::kAbort, LimbState::kAbortReturn},
+    {LimbState::kTransit, E::kAbort, LimbState::kAbortReturn},
+    {LimbState::kPregrasp, E::kAbort, LimbState::kAbortReturn},
+    {LimbState::kApproach, E::kAbort, LimbState::kAbortReturn},
 
-    {S::kLoaded, E::kLost, S::kSupportLost},
-    {S::kUnloading, E::kLost, S::kSupportLost},
+    {LimbState::kLoaded, E::kLost, LimbState::kSupportLost},
+    {LimbState::kUnloading, E::kLost, LimbState::kSupportLost},
 
-    {S::kRetracting, E::kPark, S::kPregrasp},
+    {LimbState::kRetracting, E::kPark, LimbState::kPregrasp},
 
     // Found closed when armed: pulled at before it counts, or there was nothing in it.
-    {S::kLoaded, E::kProve, S::kVerify},
-    {S::kLoaded, E::kMissed, S::kPregrasp},
+    {LimbState::kLoaded, E::kProve, LimbState::kVerify},
+    {LimbState::kLoaded, E::kMissed, LimbState::kPregrasp},
 };
 
 }  // namespace

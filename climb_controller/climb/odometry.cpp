@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "climb/unit.h"
+
 namespace climb {
 namespace {
 
 constexpr double kLeastWeight = 1e-3;
-constexpr double kMaxUnitError = 1e-3;  ///< of a quaternion's norm
 
 bool valid(const OdometryInput& input) {
-  if (!(std::abs(input.q_odom_body.norm() - 1.0) <= kMaxUnitError)) return false;
+  if (!is_unit(input.q_odom_body)) return false;
   if (!(input.dt_s >= 0.0 && input.dt_s <= 1e3)) return false;
   for (const Leg leg : kLegs) {
     if (!input.angles_rad[leg].allFinite()) return false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "climb/safety.h"
 
+#include "base/within.h"
+
 namespace climb {
 namespace {
 
@@ -21,10 +23,6 @@ bool is_sound(const GateParams& params) {
 bool is_finite(const AxisCommand& command) {
   return std::isfinite(command.position_rad) && std::isfinite(command.velocity_rad_s) &&
          std::isfinite(command.torque_Nm) && std::isfinite(command.max_torque_Nm);
-}
-
-bool in(double value, double low, double high) {  // false for NaN
-  return value >= low && value <= high;
 }
 
 AxisLimits limits_of(const JointLimits& joint) {
@@ -84,7 +82,7 @@ GateVerdict SafetyGate::start_at(const PerAxis<double>& measured_rad, double hol
     const double slack_rad = params_.max_start_error_rad;
     const AxisLimits& limits = limits_[axis];
     if (!std::isfinite(measured_rad[axis])) return {GateReason::kNotFinite, axis};
-    if (!in(measured_rad[axis], limits.min_rad - slack_rad, limits.max_rad + slack_rad)) {
+    if (!base::within(measured_rad[axis], limits.min_rad - slack_rad, limits.max_rad + slack_rad)) {
       return {GateReason::kPosition, axis};
     }
     sent_[axis] = {measured_rad[axis], 0.0, 0.0, holding_torque_part * limits.max_torque_Nm};
@@ -124,16 +122,18 @@ GateReason SafetyGate::judge_axis(const AxisCommand& wanted, int axis) const {
   // A start just outside the limits may be held or left inwards, never left outwards.
   const double low_rad = last_rad < limits.min_rad ? last_rad : limits.min_rad;
   const double high_rad = last_rad > limits.max_rad ? last_rad : limits.max_rad;
-  if (!in(wanted.position_rad, low_rad, high_rad)) return GateReason::kPosition;
+  if (!base::within(wanted.position_rad, low_rad, high_rad)) return GateReason::kPosition;
   const double max_velocity = limits.max_velocity_rad_s * kRounding;
-  if (!in(wanted.velocity_rad_s, -max_velocity, max_velocity)) return GateReason::kVelocity;
-  if (!in(wanted.torque_Nm, -limits.max_torque_Nm, limits.max_torque_Nm)) {
+  if (!base::within(wanted.velocity_rad_s, -max_velocity, max_velocity))
+    return GateReason::kVelocity;
+  if (!base::within(wanted.torque_Nm, -limits.max_torque_Nm, limits.max_torque_Nm)) {
     return GateReason::kTorque;
   }
   const bool may_limit = wanted.max_torque_Nm > 0.0 && wanted.max_torque_Nm <= limits.max_torque_Nm;
   if (!may_limit) return GateReason::kTorque;
   const double max_step_rad = limits.max_velocity_rad_s * params_.period_s * kRounding;
-  if (!in(wanted.position_rad - last_rad, -max_step_rad, max_step_rad)) return GateReason::kRate;
+  if (!base::within(wanted.position_rad - last_rad, -max_step_rad, max_step_rad))
+    return GateReason::kRate;
   return GateReason::kPassed;
 }
 

@@ -8,21 +8,20 @@
 #include <Eigen/Eigenvalues>
 
 #include "climb/bounded_forces.h"
+#include "climb/unit.h"
 
 namespace climb {
 namespace {
 
 constexpr double kMarginSlack = 0.01;
 
-constexpr double kMaxUnitError = 1e-3;
-
 bool valid(const Stance& stance) {
-  if (!(std::abs(stance.up_body.norm() - 1.0) <= kMaxUnitError)) return false;
+  if (!is_unit(stance.up_body)) return false;
   for (const Leg leg : kLegs) {
     const Contact& contact = stance.contacts[leg];
     if (!stance.angles_rad[leg].allFinite()) return false;
     if (!(contact.weight >= 0.0 && contact.weight <= 1.0)) return false;
-    if (!(std::abs(contact.rung_axis_body.norm() - 1.0) <= kMaxUnitError)) return false;
+    if (!is_unit(contact.rung_axis_body)) return false;
   }
   return true;
 }

@@ -7,7 +7,7 @@
 namespace ladder {
 namespace {
 
-constexpr double kKeep = 0.9;  // of older frames
+constexpr double kKeepDepth = 0.9;  // of older frames
 // Tangent of the angle between view and level: below the least a board hides behind its edge, above
 // the other more of it says no more.
 constexpr double kMinTangent = 0.12;
@@ -82,8 +82,8 @@ void TreadTest::learn(const std::vector<MeasuredBar>& bars) {
     weight += bar_weight;
   }
   if (depths_.empty()) return;
-  depth_sum_ = kKeep * depth_sum_ + weight * weighted_median(depths_);
-  weight_ = kKeep * weight_ + weight;
+  depth_sum_ = kKeepDepth * depth_sum_ + weight * weighted_median(depths_);
+  weight_ = kKeepDepth * weight_ + weight;
 }
 
 bool TreadTest::has_treads() const {

@@ -1,27 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tof/depth_frame.h"
 
+#include "base/within.h"
+
 namespace tof {
 namespace {
 
 constexpr double kMaxFocalLength_px = 1e5;
 constexpr double kMaxRange_m = 1e4;
 
-/// False for NaN.
-bool within(double value, double low, double high) {
-  return value >= low && value <= high;
-}
-
 bool are_sound(const Intrinsics& k) {
-  return within(k.fx_px, 1.0, kMaxFocalLength_px) && within(k.fy_px, 1.0, kMaxFocalLength_px) &&
-         within(k.cx_px, -kMaxFocalLength_px, kMaxFocalLength_px) &&
-         within(k.cy_px, -kMaxFocalLength_px, kMaxFocalLength_px);
+  return base::within(k.fx_px, 1.0, kMaxFocalLength_px) &&
+         base::within(k.fy_px, 1.0, kMaxFocalLength_px) &&
+         base::within(k.cx_px, -kMaxFocalLength_px, kMaxFocalLength_px) &&
+         base::within(k.cy_px, -kMaxFocalLength_px, kMaxFocalLength_px);
 }
 
 bool are_ranges_sound(const DepthFrame& frame) {
-  return within(frame.range_min_m, 0.0, kMaxRange_m) &&
-         within(frame.range_max_m, 0.0, kMaxRange_m) && frame.range_min_m < frame.range_max_m &&
-         within(frame.wrap_range_m, 0.0, kMaxRange_m);
+  return base::within(frame.range_min_m, 0.0, kMaxRange_m) &&
+         base::within(frame.range_max_m, 0.0, kMaxRange_m) &&
+         frame.range_min_m < frame.range_max_m &&
+         base::within(frame.wrap_range_m, 0.0, kMaxRange_m);
 }
 
 }  // namespace
