@@ -83,13 +83,16 @@ void BarDetector::measure_ladder(const NodeCloud& cloud, const BarSet& bars,
   note_ladder(bars, ladder);
 }
 
-// A bent or broken rung, or one of another kind, stands where it stands.
-bool BarDetector::is_exemplary(const MeasuredBar& bar) const {
+bool BarDetector::is_straight(const MeasuredBar& bar) const {
   const MeasureParams& p = params_.measure;
   // Heads that are far apart bend a rung that two of them see.
   const double most_sag_m = std::max(p.sag_flag_m, 2.0 * alignment_.misfit_m());
-  return !bar.is_stub() && !bar.is_v && bar.sag_m <= most_sag_m &&
-         bar.tilt_sin <= p.tilt_flag_sin && bar.is_alike;
+  return !bar.is_stub() && !bar.is_v && bar.sag_m <= most_sag_m && bar.bend_tan <= p.bent_flag_tan;
+}
+
+// A bent or broken rung, or one of another kind, stands where it stands.
+bool BarDetector::is_exemplary(const MeasuredBar& bar) const {
+  return is_straight(bar) && bar.tilt_sin <= params_.measure.tilt_flag_sin && bar.is_alike;
 }
 
 void BarDetector::note_ladder(const BarSet& bars, const LadderHypothesis& ladder) {
@@ -144,10 +147,14 @@ void BarDetector::push_back_together() {
   }
 }
 
+// Of the straight ones while there are any: a bent one looks as thick as its bend is high.
 double BarDetector::median_radius_m() {
   radii_.clear();
   double weight = 0.0;
+  const bool any_straight = std::any_of(found_.bars.begin(), found_.bars.end(),
+                                        [&](const MeasuredBar& bar) { return is_straight(bar); });
   for (const MeasuredBar& bar : found_.bars) {
+    if (any_straight && !is_straight(bar)) continue;
     radii_.emplace_back(bar.radius_m, bar.weight);
     weight += bar.weight;
   }

@@ -37,6 +37,7 @@ class BarDetector {
  private:
   void measure_ladder(const NodeCloud& cloud, const BarSet& bars, const LadderHypothesis& ladder);
   void note_ladder(const BarSet& bars, const LadderHypothesis& ladder);
+  bool is_straight(const MeasuredBar& bar) const;
   bool is_exemplary(const MeasuredBar& bar) const;
   void measure_others(const NodeCloud& cloud, const BarSet& bars);
   void push_back_together();

@@ -243,6 +243,30 @@ std::vector<double> radii_m(const LadderScene& scene, bool may_be_square) {
   return radii_m;
 }
 
+// The straight rungs' radius is told of all: not that of a bent one, as thick as its bend is high,
+// of which more is seen than of the others together.
+TEST(LadderScenes, ABentRungDoesNotTellTheOthersRadius) {
+  constexpr int kBent = 1;
+  LadderShape shape;
+  shape.num_rungs = 3;
+  shape.missing_rung = kBent;
+  LadderScene scene(12);
+  scene.add_ladder(shape);
+  const Eigen::Vector3d left_m = scene.truth.front().end0_m;
+  const Eigen::Vector3d right_m = scene.truth.front().end1_m;
+  const Eigen::Vector3d up_m = kBent * shape.spacing_m * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d middle_m = 0.5 * (left_m + right_m) - 0.028 * Eigen::Vector3d::UnitZ();
+  for (int times = 0; times < 3; ++times) {
+    scene.add_bar(left_m + up_m, middle_m + up_m, shape.rung_diameter_m);
+    scene.add_bar(middle_m + up_m, right_m + up_m, shape.rung_diameter_m);
+  }
+  const std::vector<double> told_m = radii_m(scene, false);
+  ASSERT_EQ(told_m.size(), 3U);
+  const double radius_m = 0.5 * shape.rung_diameter_m;
+  EXPECT_NEAR(told_m.front(), radius_m, 0.15 * radius_m);
+  EXPECT_NEAR(told_m.back(), radius_m, 0.15 * radius_m);
+}
+
 // Unless square rungs are asked for, radii are as seen, half of the height: too large for a square
 // bar, of which two faces show. Asked for, they are half of its side within 15 %; round ones stay
 // as they are, to the bit. Neither is held to be a board.
