@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,7 @@ struct Arguments {
   bool logs_inputs_only = false;
   std::vector<std::string> config_files;
   std::vector<std::string> overrides;
+  bool down = false;
   bool trace = false;
 };
 
@@ -78,7 +80,19 @@ Task task_of(const Arguments& arguments, std::uint64_t seed, bool damaged) {
   return task;
 }
 
-std::string json_line(const Task& task, ClimbEnd end, FullClimb& full, double wall_s) {
+/// One way, up or down.
+struct Way {
+  ClimbEnd end = ClimbEnd::kFault;
+  std::string reason;
+};
+
+std::string json_of(const char* key, const char* reason_key, const Way& way) {
+  return std::string("\"") + key + "\": \"" + name(way.end) + "\", \"" + reason_key + "\": \"" +
+         way.reason + "\", ";
+}
+
+std::string json_line(const Task& task, const Way& up, const std::optional<Way>& down,
+                      FullClimb& full, double wall_s) {
   char ladder[200];
   std::snprintf(ladder, sizeof ladder,
                 "{\"seed\": %llu, \"damage\": \"%s\", \"rungs\": %d, \"spacing_m\": %.3f, ",
@@ -87,8 +101,9 @@ std::string json_line(const Task& task, ClimbEnd end, FullClimb& full, double wa
   char last[80];
   std::snprintf(last, sizeof last, ", \"violations\": %zu, \"wall_s\": %.1f}",
                 full.climb().box().monitor().violations().size(), wall_s);
-  return ladder + ("\"end\": \"" + std::string(name(end))) + "\", \"reason\": \"" +
-         full.climb().reason() + "\", " + simulator::json_members(full.climb().figures()) + last;
+  const std::string downwards = down ? json_of("down", "down_reason", *down) : "";
+  return ladder + json_of("end", "reason", up) + downwards +
+         simulator::json_members(full.climb().figures()) + last;
 }
 
 std::string crashed_line(const Task& task) {
@@ -168,11 +183,18 @@ std::string run(const Arguments& arguments, const Task& task) {
   }
   if (arguments.trace) full.climb().each_second([&full] { trace(full); });
   full.climb().run_s(3.0);
-  ClimbEnd end = ClimbEnd::kFault;
-  if (full.climb().hang()) end = full.climb().climb(true, arguments.max_s);
+  Way up;
+  if (full.climb().hang()) up.end = full.climb().climb(true, arguments.max_s);
+  up.reason = full.climb().reason();
+  std::optional<Way> down;
+  if (arguments.down && up.end == ClimbEnd::kTop) {
+    down = Way{full.climb().climb(false, arguments.max_s), ""};
+    if (down->end == ClimbEnd::kDock && !full.climb().back_into_dock()) down->end = ClimbEnd::kHeld;
+    down->reason = full.climb().reason();
+  }
   const double wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  std::string line = json_line(task, end, full, wall_s);
+  std::string line = json_line(task, up, down, full, wall_s);
   if (log) line.insert(line.size() - 1, hash_in_json(made));
   return line;
 }
@@ -190,6 +212,7 @@ void parse(CLI::App& app, Arguments& arguments) {
   app.add_flag("--log-inputs", arguments.logs_inputs_only, "only what ladder_replay reads");
   app.add_option("-c,--config", arguments.config_files, "TOML file; later ones win");
   app.add_option("--set", arguments.overrides, "table.key=value")->allow_extra_args(false);
+  app.add_flag("--down", arguments.down, "from the top back into the dock, and disarm");
   app.add_flag("--trace", arguments.trace, "one line per simulated second");
 }
 

@@ -6,7 +6,6 @@ set(climb_control_sources
     controller.cpp
     controller_output.cpp
     controller_stance.cpp
-    controller_stance.cpp
     controller_work.cpp
     failsafe.cpp
     fault_watch.cpp
@@ -16,4 +15,5 @@ set(climb_control_sources
     limb_cycle.cpp
     limb_motion.cpp
     limb_state.cpp
-    safety.cpp)
+    safety.cpp
+    way_back.cpp)

@@ -58,6 +58,7 @@ Controller::Controller(const ControllerParams& params)
       gate_(limits_, params.gate),
       watch_(limits_, params.watch),
       planner_(params.climb),
+      way_back_(params.climb),
       shift_(params.climb.robot, params.climb.motion),
       odometry_(params.climb.robot, params.climb.odometry),
       support_(params.climb.robot, params.climb.support),

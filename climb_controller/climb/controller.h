@@ -8,6 +8,7 @@
 #include "climb/controller_io.h"
 #include "climb/fault_watch.h"
 #include "climb/step_planner.h"
+#include "climb/way_back.h"
 
 namespace climb {
 
@@ -87,6 +88,8 @@ class Controller {
   void move(const ControllerInput& input);
   bool must_stop(Leg leg) const;
   bool is_stance_firm() const;
+  /// By the rungs that it came up on; not while arming, that looks anew.
+  bool goes_back() const { return !upwards_ && state_ != ControllerState::kArming; }
 
   // controller_stance.cpp: a stance lost, and the claws opened in the dock
   bool lacks_grasps() const;
@@ -115,6 +118,7 @@ class Controller {
   SafetyGate gate_;
   FaultWatch watch_;
   StepPlanner planner_;
+  WayBack way_back_;
   BodyShift shift_;
   Odometry odometry_;
   Support support_;

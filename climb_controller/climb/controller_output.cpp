@@ -33,7 +33,7 @@ LimbInput Controller::limb_input(const ControllerInput& input, Leg leg) const {
 }
 
 LadderView Controller::ladder_of(const ControllerInput& input) const {
-  LadderView ladder = input.ladder;
+  LadderView ladder = goes_back() ? way_back_.view() : input.ladder;
   ladder.age_s = 1e-6 * static_cast<double>(input.now_us - input.ladder_received_us);
   return ladder;
 }

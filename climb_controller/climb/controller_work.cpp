@@ -41,6 +41,7 @@ PerAxis<double> measured_rad(const ControllerInput& input) {
 
 void Controller::work(const ControllerInput& input) {
   if (following_ && !input.drives_enabled) following_ = false;  // the drives hold by themselves
+  if (goes_back()) way_back_.look(input.ladder);
   boot(input);
   if (state_ == S::kArming) work_arming(input);
   if (state_ == S::kClimbing) work_climbing(input);
@@ -88,10 +89,12 @@ void Controller::work_arming(const ControllerInput& input) {
     return;
   }
   if (!prove_grasps()) return;
-  if (hangs_)
+  if (hangs_) {
     planner_.find_turn(robot_now(input));
-  else
+  } else {
     planner_.remember_dock(robot_now(input));
+    way_back_.clear();
+  }
   hangs_ = true;
   take(E::kArmed);
 }
@@ -199,6 +202,8 @@ void Controller::work_climbing(const ControllerInput& input) {
     ends = true;
   } else if (!ends && is_stance_firm() && limbs_[plan_.leg].begin(plan_.goal)) {
     T_odom_body_before_ = now.pose.T_odom_body();
+    const std::optional<LimbGoal>& home = limbs_[plan_.leg].home();
+    if (upwards_ && home) way_back_.leave(plan_.leg, moved(T_odom_body_before_, *home));
     stepping_ = true;
     withdrawn_ = is_vain_ = false;
   }
@@ -255,6 +260,9 @@ bool Controller::end_step(const ControllerInput& input) {
     steps_over_ = false;
     if (ending_ == Ending::kAtRest && ++num_steps_to_rest_ >= kNumLegs) ending_ = Ending::kNow;
     planner_.made(plan_.leg, upwards_);
+    const LimbInput limb = limb_input(input, plan_.leg);
+    const Eigen::Vector3d foot_m = kinematics_.foot_m(plan_.leg, limb.angles_rad);
+    if (!upwards_) way_back_.return_to(plan_.leg, limb.T_odom_body * foot_m);
   } else if (withdrawn_ && ++num_withdrawn_ < params_.max_withdrawn) {
     return true;  // it is back on its old rung and looks again
   } else {        // no grasp up there
@@ -324,7 +332,7 @@ void Controller::watch_target(Leg leg, const ControllerInput& input) {
   const bool is_blind = (faults_ & flag(Fault::kPerceptionSilent)) != 0;
   if (!is_before_commit || limb.returned() || is_blind) return;
   const Eigen::Vector3d goal_m = odometry_.estimate().T_odom_body() * limb.goal().grasp_m;
-  if (planner_.offers(limb.goal().rung_id, goal_m, input.ladder)) return;
+  if (planner_.offers(limb.goal().rung_id, goal_m, ladder_of(input))) return;
   // Lifted off, the body tilts a little, and with it what is far ahead.
   const PlannedStep there =
       planner_.again(retry_of(leg, input), robot_now(input), ladder_of(input));

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Adds climbs (one JSON object per line) to a file of climbs and sums up all of them. A climb that is climbed again (the same ladder:
 plain or damaged, seed, number of rungs) takes the place of the one before. The lines are taken away once they are in the file.
-Exit 1 when a robot fell, a claw closed on an unsafe rung, an invariant was violated, a climb crashed or was not ended, or a plain
-ladder's top was not reached."""
+Exit 1 when a robot fell, a claw closed on an unsafe rung, an invariant was violated, a climb crashed or was not ended, a plain
+ladder's top was not reached, or from there, where it was asked for, the dock."""
 import collections
 import json
 import pathlib
@@ -35,10 +35,13 @@ def sums(climbs):
         "climbs": len(climbs),
         "plain": len(plain),
         "plain_tops": sum(c["end"] == "top" for c in plain),
+        "plain_down": sum("down" in c for c in plain),
+        "plain_docks": sum(c.get("down") == "dock" for c in plain),
         "damaged": len(climbs) - len(plain),
         "damaged_tops": sum(c["end"] == "top" for c in climbs if c["damage"] != "plain"),
         "damaged_holds": sum(c["end"] == "held" for c in climbs if c["damage"] != "plain"),
-        "unfinished": sum(c["end"] in UNFINISHED for c in climbs),
+        "damaged_docks": sum(c.get("down") == "dock" for c in climbs if c["damage"] != "plain"),
+        "unfinished": sum(c["end"] in UNFINISHED or c.get("down") in UNFINISHED for c in climbs),
         "falls": total("falls"),
         "unsafe_grasps": total("unsafe_grasps"),
         "violations": total("violations"),
@@ -54,7 +57,8 @@ def sums(climbs):
 
 def is_good(result):
     nothing_bad = not any(result[key] for key in ("falls", "unsafe_grasps", "violations", "unfinished"))
-    return nothing_bad and result["plain_tops"] == result["plain"] and result["climbs"] > 0
+    all_there = result["plain_tops"] == result["plain"] and result["plain_docks"] == result["plain_down"]
+    return nothing_bad and all_there and result["climbs"] > 0
 
 
 def main():

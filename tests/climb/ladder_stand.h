@@ -84,6 +84,7 @@ class LadderStand {
   Eigen::Quaterniond upright() const { return Eigen::Quaterniond(T_odom_body_.linear()); }
   const climb::LegAngles& measured_rad(climb::Leg leg) const { return measured_rad_[leg]; }
   bool held(climb::Leg leg) const { return held_rung_[leg] > 0; }
+  int held_rung(climb::Leg leg) const { return held_rung_[leg]; }  ///< 0 = none
   double body_height_m() const { return T_odom_body_.translation().z(); }
 
   climb::ControllerInput input;

@@ -155,7 +155,7 @@ TEST_F(OrdersTest, TurnsRoundOnTheSpot) {
   while (output_.state == S::kClimbing && all_loaded()) cycle();
   EXPECT_NE(output_.limbs[kFrontRight], LimbState::kLoaded) << where();
   ASSERT_TRUE(reach_limb(kFrontRight, LimbState::kLoaded, 20.0));
-  EXPECT_EQ(output_.rung_ids[kFrontRight], 3) << where();
+  EXPECT_EQ(stand_.held_rung(kFrontRight), 3) << where();
 }
 
 // The first target after enabling is the measured position, jaws too (invariant 6).

@@ -257,7 +257,7 @@ TEST_F(StanceTest, GoesUpAndDownToTheDock) {
   order(Order::kClimbDown);
   ASSERT_TRUE(reach(S::kHold, 400.0)) << where();
   EXPECT_TRUE(output_.at_dock) << where();
-  EXPECT_EQ(output_.rung_ids, (PerLeg<int>{3, 3, 1, 1}));
+  for (const Leg leg : kLegs) EXPECT_EQ(stand_.held_rung(leg), is_front(leg) ? 3 : 1);
   EXPECT_NEAR(stand_.body_height_m(), 0.0, 0.01);
   order(Order::kDisarm);
   EXPECT_EQ(output_.state, S::kDisarming);

@@ -44,8 +44,12 @@ class ClimbSums(unittest.TestCase):
         before = self.add(climb(1))[1]
         self.assertEqual(self.add(), (0, before))
 
+    def test_who_came_down_is_counted(self):
+        status, sums = self.add(climb(1, down="dock"), climb(2), climb(1, "bent", down="held"))
+        self.assertEqual((status, sums["plain_down"], sums["plain_docks"], sums["damaged_docks"], sums["plain_tops"]), (0, 1, 1, 0, 2))
+
     def test_what_is_no_success(self):
-        for bad in (climb(1, "weak", falls=1), climb(1, "bent", unsafe_grasps=1), climb(1, violations=1), climb(1, end="held"),
+        for bad in (climb(1, "weak", falls=1), climb(1, "bent", unsafe_grasps=1), climb(1, violations=1), climb(1, end="held"), climb(1, down="held"),
                     climb(1, "loose", "too long"), {"seed": 1, "damage": "weak", "rungs": 13, "end": "crashed"}):
             self.target.unlink(missing_ok=True)
             self.assertEqual(self.add(climb(7), bad)[0], 1, bad)
