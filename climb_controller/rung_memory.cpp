@@ -55,7 +55,7 @@ void RungMemory::complete(std::int64_t now_us, const Eigen::Isometry3d& T_odom_b
     if (seen.damaged) {
       if (ahead_m(seen) >= params_.clear_m) learn_damage(now_us, seen);
     } else if (seen.trusted) {
-      learn(now_us, static_cast<int>(i), is_ahead(seen), snapshot);
+      learn(now_us, static_cast<int>(i), ahead_m(seen), snapshot);
     }
   }
   if (snapshot.confirmed) confirmed_us_ = now_us;
@@ -93,12 +93,13 @@ void RungMemory::learn_damage(std::int64_t now_us, const climb::RungView& seen) 
   // Something before a rung that passes is no damage.
   if (!known->is_damaged && now_us - known->suspected_us > kSuspicion_us) known->damage = 0;
   known->seen_us = known->suspected_us = now_us;
+  known->num_clear = 0;
   known->damage = seen.trusted ? params_.sound_frames : known->damage + 1;
   known->damage = std::min(known->damage, params_.sound_frames);
   if (known->damage >= params_.damage_frames) known->is_damaged = true;
 }
 
-void RungMemory::learn(std::int64_t now_us, int index, bool is_ahead,
+void RungMemory::learn(std::int64_t now_us, int index, double ahead_m,
                        const RungsSnapshot& snapshot) {
   const climb::RungView& seen = snapshot.rungs[static_cast<std::size_t>(index)];
   Remembered learned;
@@ -110,6 +111,9 @@ void RungMemory::learn(std::int64_t now_us, int index, bool is_ahead,
     learned.graspable_m += stretch.to_m - stretch.from_m;
   }
   Remembered* known = find(seen);
+  const int was_clear = known == nullptr ? 0 : known->num_clear;
+  const bool is_clear = ahead_m >= params_.clear_m && learned.graspable_m > 0.0;
+  learned.num_clear = std::min(was_clear + (is_clear ? 1 : 0), params_.sound_frames);
   if (known == nullptr) {
     if (!(learned.graspable_m > 0.0)) return;
     known = begin(seen);
@@ -123,8 +127,9 @@ void RungMemory::learn(std::int64_t now_us, int index, bool is_ahead,
   learned.suspected_us = known->suspected_us;
   learned.rung.confidence = std::max(learned.rung.confidence, known->rung.confidence);
   known->rung.confidence = learned.rung.confidence;
+  known->num_clear = learned.num_clear;
   const bool was_sound = known->graspable_m > 0.0;
-  if (is_ahead || !was_sound) {
+  if (ahead_m >= params_.ahead_m || !was_sound) {
     *known = learned;
     if (!(learned.graspable_m > 0.0) && learned.damage == 0) forget(known);
     return;
@@ -163,7 +168,8 @@ void RungMemory::add(const Remembered& remembered, RungsSnapshot& snapshot) cons
   for (std::size_t i = 0; i < snapshot.rungs.size(); ++i) {
     const climb::RungView& seen = snapshot.rungs[i];
     if (!is_same(seen, rung)) continue;
-    if (seen.trusted && seen.damaged) return;
+    const bool is_sound = remembered.num_clear >= params_.sound_frames;
+    if (seen.trusted && seen.damaged && !is_sound) return;
     index = static_cast<int>(i);
     if (seen.damaged) continue;
     // Seen again, though perhaps not well enough to be trusted anew: there it is.

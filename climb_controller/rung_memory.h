@@ -5,7 +5,8 @@
 // odom; what is seen of it now moves it. Farther ahead no sound rung is remembered.
 // Damage is remembered, where no own leg can pretend it: of a trusted rung at once, of one that is
 // not trusted once it was seen several times. It wins over what looks sound until that was seen for
-// long.
+// long. And the other way round: a rung that was seen sound for as long, where no leg was before
+// it, stays so when it passes between them.
 #pragma once
 
 #include <array>
@@ -26,7 +27,7 @@ struct RungMemoryParams {
   double ahead_m = 0.70;
   /// Body x from which on damage is remembered (run: between the own legs a quarter of all looks at
   /// sound rungs says bent and sagged, farther ahead none of 4000). Nearer it counts at that
-  /// moment.
+  /// moment, of a rung that was not seen sound in sound_frames messages from here on.
   double clear_m = 0.40;
   double same_rung_m = 0.05;  ///< nearer axes are the same rung (own: a fifth of a spacing)
   int damage_frames = 3;      ///< messages with a damaged rung that is not trusted (own)
@@ -56,11 +57,12 @@ class RungMemory {
     std::int64_t suspected_us = -1'000'000'000'000;  ///< seen damaged
     int damage = 0;  ///< messages that say so, less those that say that it is sound
     bool is_damaged = false;
+    int num_clear = 0;  ///< messages that say it is sound, clear of own legs
   };
   Remembered* find(const climb::RungView& seen);
   Remembered* begin(const climb::RungView& seen);
   void forget(Remembered* known);
-  void learn(std::int64_t now_us, int index, bool is_ahead, const RungsSnapshot& snapshot);
+  void learn(std::int64_t now_us, int index, double ahead_m, const RungsSnapshot& snapshot);
   void learn_damage(std::int64_t now_us, const climb::RungView& seen);
   void spoil(const Remembered& remembered, bool is_ahead, RungsSnapshot& snapshot) const;
   void add(const Remembered& remembered, RungsSnapshot& snapshot) const;

@@ -166,7 +166,8 @@ void trace(FullClimb& full) {
   const climb::LadderView view = full.eyes().view();
   std::printf("  %s", view.confirmed ? "ladder:" : "no ladder:");
   for (int i = 0; i < static_cast<int>(view.rungs.size()); ++i) {
-    std::printf(" %.2f%s", view.rungs[i].end0_m.z(), mark_of(view, i));
+    const climb::RungView& rung = view.rungs[i];
+    std::printf(" %.2f/%.0f%s", rung.end0_m.z(), 1e3 * rung.radius_m, mark_of(view, i));
   }
   std::printf("\n");
   std::fflush(stdout);

@@ -7,6 +7,16 @@
 #include "ladder/rectangular_bar.h"
 
 namespace ladder {
+namespace {
+
+/// So many frames tell how thick rungs are; the first are of a graph that is still growing.
+constexpr int kRadiusFrames = 100;
+/// Rungs that look thinner than this share of that are hidden in part: a leg before two of three
+/// took a quarter, for some hundred frames (run).
+constexpr double kThin = 0.9;
+constexpr double kThinGain = 0.001;  ///< ... and should they be thin, it is learnt so slowly
+
+}  // namespace
 
 BarDetector::BarDetector(const LadderParams& params)
     : params_(params),
@@ -131,10 +141,12 @@ void BarDetector::push_back_together() {
   const Eigen::Vector3d& up = found_.rails[0].axis.direction;
   if (params_.measure.square_rungs) profile_.learn(bars, up);
   const bool is_square = profile_.is_square();
+  if (is_square != was_square_) num_radii_ = 0;
+  was_square_ = is_square;
   if (is_square) {
     for (MeasuredBar& bar : bars) bar.radius_m /= square_height(bar.depth.dot(up));
   }
-  const double radius_m = median_radius_m();
+  const double radius_m = rung_radius_m();
   for (MeasuredBar& bar : bars) {
     // One of another kind keeps its own.
     bar.is_alike = std::abs(bar.radius_m - radius_m) <= params_.measure.radius_alike * radius_m;
@@ -148,13 +160,24 @@ void BarDetector::push_back_together() {
 }
 
 // Of the straight ones while there are any: a bent one looks as thick as its bend is high.
-double BarDetector::median_radius_m() {
+double BarDetector::rung_radius_m() {
+  const auto straight = [&](const MeasuredBar& bar) { return is_straight(bar); };
+  const bool any_straight = std::any_of(found_.bars.begin(), found_.bars.end(), straight);
+  if (!any_straight) return median_radius_m([](const MeasuredBar&) { return true; });
+  const double radius_m = median_radius_m(straight);
+  const bool is_known = num_radii_ == kRadiusFrames;
+  const bool is_thin = is_known && radius_m < kThin * known_radius_m_;
+  if (!is_known) ++num_radii_;
+  known_radius_m_ += (is_thin ? kThinGain : 1.0 / num_radii_) * (radius_m - known_radius_m_);
+  return is_thin ? known_radius_m_ : radius_m;
+}
+
+template <class Counts>
+double BarDetector::median_radius_m(const Counts& counts) {
   radii_.clear();
   double weight = 0.0;
-  const bool any_straight = std::any_of(found_.bars.begin(), found_.bars.end(),
-                                        [&](const MeasuredBar& bar) { return is_straight(bar); });
   for (const MeasuredBar& bar : found_.bars) {
-    if (any_straight && !is_straight(bar)) continue;
+    if (!counts(bar)) continue;
     radii_.emplace_back(bar.radius_m, bar.weight);
     weight += bar.weight;
   }

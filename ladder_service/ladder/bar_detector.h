@@ -31,6 +31,7 @@ class BarDetector {
   void reset() {
     alignment_.reset();
     profile_.reset();
+    num_radii_ = 0;
   }
   const HeadAlignment& alignment() const { return alignment_; }
 
@@ -41,7 +42,9 @@ class BarDetector {
   bool is_exemplary(const MeasuredBar& bar) const;
   void measure_others(const NodeCloud& cloud, const BarSet& bars);
   void push_back_together();
-  double median_radius_m();
+  double rung_radius_m();
+  template <class Counts>
+  double median_radius_m(const Counts& counts);
   void join_halves();
   void drop_short_stubs();
   bool is_deep();
@@ -54,6 +57,9 @@ class BarDetector {
   LadderTest test_;
   BarMeasurement measurement_;
   RungProfile profile_;
+  double known_radius_m_ = 0.0;  ///< of the rungs, by many frames
+  int num_radii_ = 0;            ///< frames that told it
+  bool was_square_ = false;
   Detections found_;
   SeenLadder ladder_;
   std::vector<char> used_;

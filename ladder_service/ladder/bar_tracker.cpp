@@ -99,6 +99,10 @@ void BarTracker::take(BarTrack& track, const MeasuredBar& bar) const {
   next.bend_tan = track.bar.bend_tan + shape_gain * (bar.bend_tan - track.bar.bend_tan);
   next.tilt_sin = track.bar.tilt_sin + shape_gain * (bar.tilt_sin - track.bar.tilt_sin);
   next.radius_m = track.bar.radius_m + shape_gain * (bar.radius_m - track.bar.radius_m);
+  // What was as thick as the others and looks thin by now is hidden in part.
+  const bool is_hidden = track.bar.is_alike && !bar.is_alike && bar.radius_m < track.bar.radius_m;
+  if (is_hidden) next.radius_m = track.bar.radius_m;
+  next.is_alike = bar.is_alike || is_hidden;
   track.bar = next;
 }
 

@@ -45,6 +45,8 @@ struct MeasuredBar {
   Eigen::Vector3d middle_m() const { return 0.5 * (end0_m + end1_m); }
   double length_m() const { return std::sqrt((end1_m - end0_m).squaredNorm()); }
   bool is_stub() const { return !reaches_end0 || !reaches_end1; }
+  /// What hides a part of a bar hides of its height, too.
+  bool is_whole() const { return seen.count() * 10 >= seen.size() * 9; }
 };
 
 /// A rail: its axis between two heights along it, and half its visible width.

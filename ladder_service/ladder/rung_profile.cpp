@@ -23,7 +23,7 @@ void RungProfile::learn(const std::vector<MeasuredBar>& bars, const Eigen::Vecto
   seen_.clear();
   double weight = 0.0, expected = 0.0, measured_m = 0.0;
   for (const MeasuredBar& bar : bars) {
-    if (bar.is_stub() || !(bar.radius_m > 0.0)) continue;
+    if (bar.is_stub() || !bar.is_whole() || !(bar.radius_m > 0.0)) continue;
     const Seen seen{square_height(bar.depth.dot(up)), bar.radius_m, bar.weight};
     seen_.push_back(seen);
     weight += seen.weight;

@@ -148,6 +148,33 @@ TEST_F(RungMemoryTest, DamageBetweenTheLegsIsNotRemembered) {
   EXPECT_EQ(snapshot_.stretches.size(), 1U);
 }
 
+/// A rung that looked sound long enough where no own leg is before it stays sound between the legs,
+/// at its place; one that did not, or that was seen damaged since, does not.
+TEST_F(RungMemoryTest, LongSeenSoundStaysSoundBetweenTheLegs) {
+  const int enough = RungMemoryParams{}.sound_frames;
+  for (const int looks : {enough, enough - 1}) {
+    memory_ = RungMemory(RungMemoryParams{});
+    for (int i = 0; i < looks; ++i) {
+      see(0.6);
+      complete(0.1 * i, 0.0);
+    }
+    see(0.61, true, true);
+    complete(2.0, 0.3);
+    ASSERT_EQ(snapshot_.rungs.size(), 1U);
+    EXPECT_EQ(snapshot_.rungs[0].damaged, looks < enough);
+    EXPECT_EQ(snapshot_.stretches.empty(), looks < enough);
+    const double height_m = looks < enough ? 0.61 : 0.6;
+    EXPECT_NEAR(snapshot_.rungs[0].end0_m.z(), height_m, 1e-9);
+  }
+  for (int i = 0; i < enough; ++i) {
+    see(0.6, i != 3, i == 3);
+    complete(3.0 + 0.1 * i, 0.0);
+  }
+  see(0.6, true, true);
+  complete(5.0, 0.3);
+  EXPECT_TRUE(snapshot_.rungs[0].damaged);
+}
+
 /// Of a rung that is not trusted one damaged look proves nothing, three within a second do.
 TEST_F(RungMemoryTest, DamageOfAnUntrustedRungCountsWhenItLasts) {
   see(0.6);

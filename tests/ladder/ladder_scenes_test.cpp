@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "ladder/bar_detector.h"
+#include "ladder/bar_tracker.h"
 #include "ladder/ladder.h"
 #include "tests/support/ladder_scene.h"
 
@@ -265,6 +266,53 @@ TEST(LadderScenes, ABentRungDoesNotTellTheOthersRadius) {
   const double radius_m = 0.5 * shape.rung_diameter_m;
   EXPECT_NEAR(told_m.front(), radius_m, 0.15 * radius_m);
   EXPECT_NEAR(told_m.back(), radius_m, 0.15 * radius_m);
+}
+
+// Rungs do not become thin: once seen for long, they keep their radius when less of their height is
+// seen, in the detector and in the tracks. Another ladder, after a reset, has its own.
+TEST(LadderScenes, WhatLooksThinnerIsHidden) {
+  const auto ladder_of = [](double diameter_m) {
+    LadderShape shape;
+    shape.rung_diameter_m = diameter_m;
+    LadderScene scene(12);
+    scene.add_ladder(shape);
+    return scene;
+  };
+  const LadderScene before = ladder_of(0.030);
+  const LadderScene hidden = ladder_of(0.022);
+  ladder::BarDetector detector(LadderParams{});
+  const auto last_radius_m = [&](const LadderScene& scene, int num_frames) {
+    double radius_m = 0.0;
+    for (int frame = 0; frame < num_frames; ++frame) {
+      for (const ladder::MeasuredBar& bar : detector.detect(scene.cloud(frame)).bars) {
+        if (bar.on_ladder && bar.is_alike) radius_m = bar.radius_m;
+      }
+    }
+    return radius_m;
+  };
+  const double radius_m = last_radius_m(before, 110);
+  EXPECT_NEAR(radius_m, 0.015, 0.002);
+  EXPECT_NEAR(last_radius_m(hidden, 30), radius_m, 0.05 * radius_m);
+  detector.reset();
+  EXPECT_LT(last_radius_m(hidden, 30), 0.75 * radius_m);
+
+  // One rung alone, and by more than rungs differ: of another kind it would be, had it not been
+  // seen like the others.
+  ladder::BarTracker tracker(LadderParams{});
+  ladder::MeasuredBar bar;
+  bar.end0_m = {1.0, 0.2, 0.5};
+  bar.end1_m = {1.0, -0.2, 0.5};
+  bar.on_ladder = bar.is_alike = true;
+  bar.radius_m = 0.014;
+  for (int frame = 0; frame < 10; ++frame) tracker.update(std::vector{bar});
+  bar.is_alike = false;
+  bar.radius_m = 0.005;
+  for (int frame = 0; frame < 50; ++frame) tracker.update(std::vector{bar});
+  ASSERT_EQ(tracker.tracks().size(), 1U);
+  EXPECT_EQ(tracker.tracks()[0].bar.radius_m, 0.014);
+  bar.radius_m = 0.040;
+  for (int frame = 0; frame < 50; ++frame) tracker.update(std::vector{bar});
+  EXPECT_NEAR(tracker.tracks()[0].bar.radius_m, 0.040, 0.001);
 }
 
 // Unless square rungs are asked for, radii are as seen, half of the height: too large for a square

@@ -81,6 +81,7 @@ std::vector<MeasuredBar> rungs(bool square, double error, base::Rng& rng) {
     MeasuredBar bar;
     bar.depth = Eigen::Vector3d(1.0, 0.0, 0.3 * i + 0.1).normalized();
     bar.weight = 50.0;
+    bar.seen.set();
     bar.radius_m = 0.014 * (square ? square_height(bar.depth.z()) : 1.0);
     bar.radius_m *= 1.0 + error * rng.gaussian();
     bars.push_back(bar);
@@ -123,6 +124,20 @@ TEST(RungProfile, RoundUntilShown) {
   for (int i = 0; i < 10; ++i) profile.learn(square, up);
   EXPECT_TRUE(profile.is_square());
   profile.reset();
+  EXPECT_FALSE(profile.is_square());
+}
+
+// Rungs that something hides in part say nothing of their section: what hides them takes of their
+// height, too.
+TEST(RungProfile, HiddenRungsSayNothing) {
+  base::Rng rng(1);
+  std::vector<MeasuredBar> square = rungs(true, 0.0, rng);
+  for (MeasuredBar& bar : square) {
+    for (std::size_t i = 0; i < bar.seen.size() / 5; ++i) bar.seen.reset(i);
+    EXPECT_FALSE(bar.is_whole());
+  }
+  RungProfile profile(64);
+  for (int i = 0; i < 10; ++i) profile.learn(square, Eigen::Vector3d::UnitZ());
   EXPECT_FALSE(profile.is_square());
 }
 
