@@ -115,6 +115,10 @@ bool where_enabled(const Situation& at) {
          (at.state == S::kArming && at.leg >= 0);
 }
 
+bool where_powered(const Situation& at) {
+  return is_powered(at.state);
+}
+
 bool in_climbing(const Situation& at) {
   return at.state == S::kClimbing;
 }

@@ -15,6 +15,7 @@ bool is_unpowered(climb::ControllerState state);
 bool everywhere(const Situation& at);
 bool after_boot(const Situation& at);     ///< it speaks on the bus
 bool where_enabled(const Situation& at);  ///< drives follow targets
+bool where_powered(const Situation& at);  ///< ... and nothing is latched
 bool in_climbing(const Situation& at);
 bool in_hold(const Situation& at);  ///< on the ladder
 

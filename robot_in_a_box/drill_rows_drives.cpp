@@ -174,9 +174,6 @@ void come_back_and_rearm(CaseRun& run) {
   come_back(run);
   reset_and_arm(run, 600'000);
 }
-bool was_powered(const Situation& at) {
-  return is_powered(at.state);
-}
 std::int64_t reset_at(const CaseRun& run) {
   return run.since_us() >= 600'000 ? run.injected_us() + 600'000 : -1;
 }
@@ -225,7 +222,7 @@ constexpr std::array kDriveRows = {
     DrillRow{19, "a", "interface down", "for 0.3 s", "silent, FAULT_HOLD", after_boot, 1, go_down,
              nullptr, is_silent, harm_when_silent, come_back, kT_us, 1'500'000},
     DrillRow{19, "b", "interface back", "down for 0.3 s, reset and armed",
-             "enabled where it stands", was_powered, 1, go_down, reset_at, follows_again,
+             "enabled where it stands", where_powered, 1, go_down, reset_at, follows_again,
              harm_to_grasps, come_back_and_rearm, 6'000'000, 7'000'000},
 };
 

@@ -69,6 +69,15 @@ const char* harm_without_master(const CaseRun& run) {
 void hang_a_little(CaseRun& run) {
   run.box().hang(15'000);
 }
+void hang_for_a_while(CaseRun& run) {
+  run.box().hang(300'000);
+}
+void reset_and_arm_after_hanging(CaseRun& run) {
+  reset_and_arm(run, 1'200'000);
+}
+std::int64_t reset_after_hanging_at(const CaseRun& run) {
+  return run.since_us() >= 1'200'000 ? run.injected_us() + 1'200'000 : -1;
+}
 void hang_for_four_cycles(CaseRun& run) {
   run.box().hang(50'000);
 }
@@ -250,6 +259,9 @@ constexpr std::array kProcessRows = {
              600'000},
     DrillRow{21, "d", "loop overrun", "once, 15 ms", "counted only", everywhere, 1, hang_a_little,
              nullptr, takes_no_notice, harm_by_notice, nullptr, 300'000, 400'000},
+    DrillRow{21, "e", "controller back", "hung for 0.3 s, reset and armed",
+             "enabled where it stands", where_powered, 1, hang_for_a_while, reset_after_hanging_at,
+             follows_again, harm_to_grasps, reset_and_arm_after_hanging, 6'000'000, 8'000'000},
     DrillRow{22, "a", "SIGTERM", "while it climbs", "finishes the step, HOLD, hands over",
              in_climbing, 1, terminate, nullptr, ends_at_rest, harm_by_next_step, nullptr,
              20'000'000 + kHandingOver_us, 20'800'000},

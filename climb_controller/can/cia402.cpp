@@ -222,4 +222,8 @@ bool is_warning_code(std::uint16_t error_code) {
   return error_code == 0x3120 || error_code == 0x3220 || error_code == 0x4310;
 }
 
+bool is_master_silent_code(std::uint16_t error_code) {
+  return error_code == 0x8130 || error_code == 0x8250;
+}
+
 }  // namespace can::cia402

@@ -131,6 +131,9 @@ std::optional<Emergency> decode_emergency(const CanFrame& frame);
 /// in operation.
 bool is_warning_code(std::uint16_t error_code);
 
+/// The master's heartbeat (8130h) or its targets (8250h) did not come.
+bool is_master_silent_code(std::uint16_t error_code);
+
 // --- service data, expedited only ---------------------------------------------------------------
 
 struct Object {

@@ -136,6 +136,8 @@ void Cia402Axis::take_status(const cia402::Tpdo1& pdo) {
 void Cia402Axis::take_emergency(const cia402::Emergency& emergency, BusLine& line) {
   error_code_ = emergency.error_code;
   if (emergency.error_code == 0) return;
+  // Re-arming, we say nothing for some cycles ourselves.
+  if (is_resetting_ && cia402::is_master_silent_code(emergency.error_code)) return;
   raise(
       line,
       cia402::is_warning_code(emergency.error_code) ? FaultCause::kWarning : FaultCause::kEmergency,

@@ -152,6 +152,26 @@ TEST(Cia402Faults, Emergencies) {
   }
 }
 
+// Re-arming keeps still for longer than drives wait for targets: what they say of that is no fault,
+// anything else is.
+TEST(Cia402Faults, SilenceOfRearmingIsNoFault) {
+  for (const char* said :
+       {"081#5082110000000000", "081#3081110000000000", "081#1186210000000000"}) {
+    const bool is_silence = std::string_view(said).substr(6, 2) != "86";
+    BusRig rig(1);
+    ASSERT_TRUE(rig.bring_to_enabled());
+    rig.line.put(from_hex(said));
+    rig.cycle();
+    ASSERT_TRUE(rig.has(FaultCause::kEmergency, 0)) << said;
+    ASSERT_TRUE(rig.bus->rearm());
+    ASSERT_TRUE(rig.run_until(BusPhase::kRearming, 500)) << said;
+    rig.line.put(from_hex(said));
+    ASSERT_TRUE(rig.run_until(BusPhase::kReady, 500)) << said;
+    EXPECT_EQ(rig.bus->faults().empty(), is_silence) << said << rig.fault_names();
+    EXPECT_EQ(rig.bus->enable(), is_silence) << said;
+  }
+}
+
 // "Error gone" is no fault.
 TEST(Cia402Faults, ClearedEmergencyIsNoFault) {
   BusRig rig(1);

@@ -257,7 +257,8 @@ TEST_F(ClimbProcess, IsArmedOnTheLadderAfterAKill) {
 }
 
 // Stopped in its tracks for a while, as by a debugger: the drives have stopped by themselves;
-// going on it finds that out and stays in FAULT_HOLD.
+// going on it finds that out and stays in FAULT_HOLD, until the operator's reset: then it is armed
+// again.
 TEST_F(ClimbProcess, HungControllerStaysStopped) {
   const auto climber = controller(can());
   ASSERT_EQ(command({"state", "--wait", "DISARMED", "--timeout", "30"}), 0) << climber->output();
@@ -272,6 +273,8 @@ TEST_F(ClimbProcess, HungControllerStaysStopped) {
   EXPECT_GT(now_.overruns, 0);
   usleep(300'000);
   EXPECT_TRUE(plant_->comes_to_show("enabled  0")) << plant_->last_line();
+  EXPECT_EQ(command({"reset"}), 0) << said_ << climber->output();
+  EXPECT_TRUE(arm()) << said_ << climber->output();
 }
 
 // The E-stop line stops everything and stays latched after its release until the operator's reset;
