@@ -9,8 +9,9 @@
 namespace ladder {
 namespace {
 
-/// So many frames tell how thick rungs are; the first are of a graph that is still growing.
-constexpr int kRadiusFrames = 100;
+/// So many frames tell what a ladder's rungs are like, thick or thin, round or square: then the
+/// robot may climb it, and its own legs hide parts of them (run: round ones looked square).
+constexpr int kSettledFrames = 100;
 /// Rungs that look thinner than this share of that are hidden in part: a leg before two of three
 /// took a quarter, for some hundred frames (run).
 constexpr double kThin = 0.9;
@@ -139,7 +140,7 @@ void BarDetector::push_back_together() {
   std::vector<MeasuredBar>& bars = found_.bars;
   if (bars.empty()) return;
   const Eigen::Vector3d& up = found_.rails[0].axis.direction;
-  if (params_.measure.square_rungs) profile_.learn(bars, up);
+  if (params_.measure.square_rungs && num_radii_ < kSettledFrames) profile_.learn(bars, up);
   const bool is_square = profile_.is_square();
   if (is_square != was_square_) num_radii_ = 0;
   was_square_ = is_square;
@@ -165,7 +166,7 @@ double BarDetector::rung_radius_m() {
   const bool any_straight = std::any_of(found_.bars.begin(), found_.bars.end(), straight);
   if (!any_straight) return median_radius_m([](const MeasuredBar&) { return true; });
   const double radius_m = median_radius_m(straight);
-  const bool is_known = num_radii_ == kRadiusFrames;
+  const bool is_known = num_radii_ == kSettledFrames;
   const bool is_thin = is_known && radius_m < kThin * known_radius_m_;
   if (!is_known) ++num_radii_;
   known_radius_m_ += (is_thin ? kThinGain : 1.0 / num_radii_) * (radius_m - known_radius_m_);

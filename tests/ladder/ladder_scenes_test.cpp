@@ -268,6 +268,17 @@ TEST(LadderScenes, ABentRungDoesNotTellTheOthersRadius) {
   EXPECT_NEAR(told_m.back(), radius_m, 0.15 * radius_m);
 }
 
+/// Of the rungs that are alike, after so many frames more; [m].
+double last_radius_m(ladder::BarDetector& detector, const LadderScene& scene, int num_frames) {
+  double radius_m = 0.0;
+  for (int frame = 0; frame < num_frames; ++frame) {
+    for (const ladder::MeasuredBar& bar : detector.detect(scene.cloud(frame)).bars) {
+      if (bar.on_ladder && bar.is_alike) radius_m = bar.radius_m;
+    }
+  }
+  return radius_m;
+}
+
 // Rungs do not become thin: once seen for long, they keep their radius when less of their height is
 // seen, in the detector and in the tracks. Another ladder, after a reset, has its own.
 TEST(LadderScenes, WhatLooksThinnerIsHidden) {
@@ -281,20 +292,11 @@ TEST(LadderScenes, WhatLooksThinnerIsHidden) {
   const LadderScene before = ladder_of(0.030);
   const LadderScene hidden = ladder_of(0.022);
   ladder::BarDetector detector(LadderParams{});
-  const auto last_radius_m = [&](const LadderScene& scene, int num_frames) {
-    double radius_m = 0.0;
-    for (int frame = 0; frame < num_frames; ++frame) {
-      for (const ladder::MeasuredBar& bar : detector.detect(scene.cloud(frame)).bars) {
-        if (bar.on_ladder && bar.is_alike) radius_m = bar.radius_m;
-      }
-    }
-    return radius_m;
-  };
-  const double radius_m = last_radius_m(before, 110);
+  const double radius_m = last_radius_m(detector, before, 110);
   EXPECT_NEAR(radius_m, 0.015, 0.002);
-  EXPECT_NEAR(last_radius_m(hidden, 30), radius_m, 0.05 * radius_m);
+  EXPECT_NEAR(last_radius_m(detector, hidden, 30), radius_m, 0.05 * radius_m);
   detector.reset();
-  EXPECT_LT(last_radius_m(hidden, 30), 0.75 * radius_m);
+  EXPECT_LT(last_radius_m(detector, hidden, 30), 0.75 * radius_m);
 
   // One rung alone, and by more than rungs differ: of another kind it would be, had it not been
   // seen like the others.
@@ -313,6 +315,24 @@ TEST(LadderScenes, WhatLooksThinnerIsHidden) {
   bar.radius_m = 0.040;
   for (int frame = 0; frame < 50; ++frame) tracker.update(std::vector{bar});
   EXPECT_NEAR(tracker.tracks()[0].bar.radius_m, 0.040, 0.001);
+}
+
+// Whether a ladder's rungs are square is settled in its first hundred frames: when the robot climbs
+// it, round ones may look so. Another ladder, after a reset, is looked at anew.
+TEST(LadderScenes, ASectionIsSettled) {
+  LadderShape shape;
+  shape.distance_m = 0.8;
+  LadderScene round(12);
+  round.add_ladder(shape);
+  shape.tread_depth_m = shape.rung_diameter_m;
+  LadderScene square(12);
+  square.add_ladder(shape);
+  ladder::BarDetector detector(LadderParams{});
+  const double side_m = shape.rung_diameter_m;
+  EXPECT_NEAR(last_radius_m(detector, round, 110), 0.5 * side_m, 0.15 * 0.5 * side_m);
+  EXPECT_GT(last_radius_m(detector, square, 30), 1.1 * 0.5 * side_m);
+  detector.reset();
+  EXPECT_NEAR(last_radius_m(detector, square, 30), 0.5 * side_m, 0.15 * 0.5 * side_m);
 }
 
 // Unless square rungs are asked for, radii are as seen, half of the height: too large for a square
