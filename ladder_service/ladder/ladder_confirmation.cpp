@@ -103,7 +103,7 @@ LadderState LadderConfirmation::update(const Detections& found,
   const Spacing measured = measure(tracks);
   const bool is_ladder =
       measured.num_rungs >= p.min_rungs && measured.spacing_m >= p.min_spacing_m &&
-      measured.spacing_m <= p.max_spacing_m && measured.sigma_m <= p.max_spacing_sigma_m;
+      measured.spacing_m <= p.max_spacing_m && measured.sigma_m <= max_spacing_sigma_m();
   if (is_ladder) {
     state_ = LadderState::kConfirmed;
     spacing_ = measured;
@@ -152,27 +152,33 @@ void LadderConfirmation::follow_rails(const Detections& found) {
 
 // A bent rung does not stand at its proper height, nor does one of which the view's edge leaves a
 // part; a stub does.
-bool LadderConfirmation::tells_height(const BarTrack& track, double radius_m) const {
+bool LadderConfirmation::tells_height(const BarTrack& track) const {
   const unsigned damage = track.flags(params_.measure) & (kFlagBent | kFlagSagged | kFlagTilted);
-  const double off_m = std::abs(track.bar.radius_m - radius_m);
-  return damage == 0 && off_m <= params_.measure.radius_alike * radius_m;
+  const double off_m = std::abs(track.bar.radius_m - radius_m_);
+  return damage == 0 && off_m <= params_.measure.radius_alike * radius_m_;
+}
+
+// Of a thick bar less than half is seen, and the middle of that is no place on its axis.
+double LadderConfirmation::max_spacing_sigma_m() const {
+  constexpr double kOfRadius = 0.12;  // 100 mm rungs: 5.3 of 5.8 mm (tuning seeds)
+  return std::max(params_.test.max_spacing_sigma_m, kOfRadius * radius_m_);
 }
 
 Spacing LadderConfirmation::measure(const std::vector<BarTrack>& tracks) {
   heights_m_.clear();
   damaged_.clear();
   if (rails_.empty()) return {};
-  double radius_m = 0.0;  // of the heaviest
+  radius_m_ = 0.0;  // of the heaviest
   double weight = 0.0;
   for (const BarTrack& track : tracks) {
     if (!track.is_proven || track.bar.weight <= weight) continue;
     weight = track.bar.weight;
-    radius_m = track.bar.radius_m;
+    radius_m_ = track.bar.radius_m;
   }
   const Axis& left = rails_[0].axis;
   for (const BarTrack& track : tracks) {
     if (!track.is_proven) continue;
-    if (tells_height(track, radius_m)) {
+    if (tells_height(track)) {
       heights_m_.push_back(left.along(track.bar.middle_m()));
     } else {
       damaged_.push_back(

@@ -46,12 +46,14 @@ class LadderConfirmation {
 
  private:
   void follow_rails(const Detections& found);
-  bool tells_height(const BarTrack& track, double radius_m) const;
+  bool tells_height(const BarTrack& track) const;
+  double max_spacing_sigma_m() const;
   Spacing measure(const std::vector<BarTrack>& tracks);
 
   LadderParams params_;
   LadderState state_ = LadderState::kUnknown;
   Spacing spacing_;
+  double radius_m_ = 0.0;  ///< of the rung that was seen best
   std::vector<MeasuredRail> rails_;
   std::vector<double> heights_m_;
   std::vector<DamagedHeight> damaged_;

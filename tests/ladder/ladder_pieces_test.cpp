@@ -155,26 +155,49 @@ TEST(Spacing, TakesNoOtherBarForAThird) {
   EXPECT_EQ(ladder::fit_spacing_beside({0.0, 0.19}, {{0.38, 0.38, 0.0}}, {}).num_rungs, 0);
 }
 
-// A rung of which the view's edge shows a part does not spoil the spacing of the whole ones.
-TEST(LadderConfirmation, LeavesOutARungThatTheViewCuts) {
+/// Two rails, and a rung proven between them.
+ladder::Detections rails_of_a_ladder() {
   ladder::Detections found;
   found.is_ladder = true;
   for (const double y_m : {0.2, -0.2}) {
     found.rails.push_back({{{1.0, y_m, 0.0}, Eigen::Vector3d::UnitZ()}, -1.0, 1.0, 0.01});
   }
+  return found;
+}
+ladder::BarTrack proven_rung(int id, double z_m, double radius_m, double weight) {
+  ladder::BarTrack track;
+  track.id = id;
+  track.is_proven = true;
+  track.bar.end0_m = {1.0, 0.2, z_m};
+  track.bar.end1_m = {1.0, -0.2, z_m};
+  track.bar.radius_m = radius_m;
+  track.bar.weight = weight;
+  return track;
+}
+
+// How regular a ladder has to be depends on how thick its rungs are: of a thick one less than half
+// is seen.
+TEST(LadderConfirmation, ThickRungsMayStandLessRegularly) {
+  const ladder::Detections found = rails_of_a_ladder();
+  for (const double radius_m : {0.014, 0.030, 0.048}) {
+    std::vector<ladder::BarTrack> tracks;
+    int id = 0;
+    for (const double z_m : {-0.305, 0.009, 0.305}) {
+      tracks.push_back(proven_rung(++id, z_m, radius_m, 1000.0));
+    }
+    ladder::LadderConfirmation confirmation{ladder::LadderParams{}};
+    const bool confirmed = confirmation.update(found, tracks) == ladder::LadderState::kConfirmed;
+    EXPECT_EQ(confirmed, radius_m == 0.048) << radius_m;
+  }
+}
+
+// A rung of which the view's edge shows a part does not spoil the spacing of the whole ones.
+TEST(LadderConfirmation, LeavesOutARungThatTheViewCuts) {
+  const ladder::Detections found = rails_of_a_ladder();
   std::vector<ladder::BarTrack> tracks;
-  const auto add = [&tracks](double z_m, double radius_m, double weight) {
-    ladder::BarTrack track;
-    track.id = static_cast<int>(tracks.size()) + 1;
-    track.is_proven = true;
-    track.bar.end0_m = {1.0, 0.2, z_m};
-    track.bar.end1_m = {1.0, -0.2, z_m};
-    track.bar.radius_m = radius_m;
-    track.bar.weight = weight;
-    tracks.push_back(track);
-  };
-  for (const double z_m : {-0.3, 0.0, 0.3}) add(z_m, 0.05, 4000.0);
-  add(0.565, 0.02, 1000.0);
+  int id = 0;
+  for (const double z_m : {-0.3, 0.0, 0.3}) tracks.push_back(proven_rung(++id, z_m, 0.05, 4000.0));
+  tracks.push_back(proven_rung(++id, 0.565, 0.02, 1000.0));
   ladder::LadderConfirmation confirmation{ladder::LadderParams{}};
   EXPECT_EQ(confirmation.update(found, tracks), ladder::LadderState::kConfirmed);
   EXPECT_NEAR(confirmation.spacing().spacing_m, 0.30, 1e-9);
