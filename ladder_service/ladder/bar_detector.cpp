@@ -15,7 +15,8 @@ constexpr int kSettledFrames = 100;
 /// Rungs that look thinner than this share of that are hidden in part: a leg before two of three
 /// took a quarter, for some hundred frames (run).
 constexpr double kThin = 0.9;
-constexpr double kThinGain = 0.001;  ///< ... and should they be thin, it is learnt so slowly
+constexpr double kThinGain = 0.001;      ///< ... and should they be thin, it is learnt so slowly
+constexpr double kOtherLadder_m = 0.25;  ///< a rail so far off is another ladder's
 
 }  // namespace
 
@@ -139,7 +140,10 @@ void BarDetector::note_ladder(const BarSet& bars, const LadderHypothesis& ladder
 void BarDetector::push_back_together() {
   std::vector<MeasuredBar>& bars = found_.bars;
   if (bars.empty()) return;
-  const Eigen::Vector3d& up = found_.rails[0].axis.direction;
+  const Axis& rail = found_.rails[0].axis;
+  const Eigen::Vector3d& up = rail.direction;
+  if (rail.distance(known_rail_m_) > kOtherLadder_m) forget_rungs();
+  known_rail_m_ = rail.origin_m;
   if (params_.measure.square_rungs && num_radii_ < kSettledFrames) profile_.learn(bars, up);
   const bool is_square = profile_.is_square();
   if (is_square != was_square_) num_radii_ = 0;
@@ -158,6 +162,11 @@ void BarDetector::push_back_together() {
       BarMeasurement::push_back(bar.radius_m, bar);
     }
   }
+}
+
+void BarDetector::forget_rungs() {
+  profile_.reset();
+  num_radii_ = 0;
 }
 
 // Of the straight ones while there are any: a bent one looks as thick as its bend is high.

@@ -30,8 +30,7 @@ class BarDetector {
   const Detections& detect(const NodeCloud& seen);
   void reset() {
     alignment_.reset();
-    profile_.reset();
-    num_radii_ = 0;
+    forget_rungs();
   }
   const HeadAlignment& alignment() const { return alignment_; }
 
@@ -42,6 +41,7 @@ class BarDetector {
   bool is_exemplary(const MeasuredBar& bar) const;
   void measure_others(const NodeCloud& cloud, const BarSet& bars);
   void push_back_together();
+  void forget_rungs();
   double rung_radius_m();
   template <class Counts>
   double median_radius_m(const Counts& counts);
@@ -57,8 +57,9 @@ class BarDetector {
   LadderTest test_;
   BarMeasurement measurement_;
   RungProfile profile_;
-  double known_radius_m_ = 0.0;  ///< of the rungs, by many frames
-  int num_radii_ = 0;            ///< frames that told it
+  Eigen::Vector3d known_rail_m_ = Eigen::Vector3d::Zero();  ///< a point of the left one, last seen
+  double known_radius_m_ = 0.0;                             ///< of the rungs, by many frames
+  int num_radii_ = 0;                                       ///< frames that told it
   bool was_square_ = false;
   Detections found_;
   SeenLadder ladder_;

@@ -280,21 +280,25 @@ double last_radius_m(ladder::BarDetector& detector, const LadderScene& scene, in
 }
 
 // Rungs do not become thin: once seen for long, they keep their radius when less of their height is
-// seen, in the detector and in the tracks. Another ladder, after a reset, has its own.
+// seen, in the detector and in the tracks. Another ladder, in another place or after a reset, has
+// its own.
 TEST(LadderScenes, WhatLooksThinnerIsHidden) {
-  const auto ladder_of = [](double diameter_m) {
+  const auto ladder_of = [](double diameter_m, double distance_m) {
     LadderShape shape;
     shape.rung_diameter_m = diameter_m;
+    shape.distance_m = distance_m;
     LadderScene scene(12);
     scene.add_ladder(shape);
     return scene;
   };
-  const LadderScene before = ladder_of(0.030);
-  const LadderScene hidden = ladder_of(0.022);
+  const LadderScene before = ladder_of(0.030, 1.0);
+  const LadderScene hidden = ladder_of(0.022, 1.0);
   ladder::BarDetector detector(LadderParams{});
   const double radius_m = last_radius_m(detector, before, 110);
   EXPECT_NEAR(radius_m, 0.015, 0.002);
   EXPECT_NEAR(last_radius_m(detector, hidden, 30), radius_m, 0.05 * radius_m);
+  EXPECT_LT(last_radius_m(detector, ladder_of(0.022, 0.7), 30), 0.8 * radius_m);
+  last_radius_m(detector, before, 110);
   detector.reset();
   EXPECT_LT(last_radius_m(detector, hidden, 30), 0.75 * radius_m);
 
