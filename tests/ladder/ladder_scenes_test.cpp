@@ -331,7 +331,9 @@ TEST(LadderScenes, ASectionIsSettled) {
   shape.tread_depth_m = shape.rung_diameter_m;
   LadderScene square(12);
   square.add_ladder(shape);
-  ladder::BarDetector detector(LadderParams{});
+  LadderParams params;
+  params.measure.square_rungs = true;
+  ladder::BarDetector detector(params);
   const double side_m = shape.rung_diameter_m;
   EXPECT_NEAR(last_radius_m(detector, round, 110), 0.5 * side_m, 0.15 * 0.5 * side_m);
   EXPECT_GT(last_radius_m(detector, square, 30), 1.1 * 0.5 * side_m);
