@@ -75,14 +75,14 @@ void hang_for_a_while(CaseRun& run) {
 void reset_and_arm_after_hanging(CaseRun& run) {
   reset_and_arm(run, 1'200'000);
 }
-std::int64_t reset_after_hanging_at(const CaseRun& run) {
-  return run.since_us() >= 1'200'000 ? run.injected_us() + 1'200'000 : -1;
-}
 void hang_for_four_cycles(CaseRun& run) {
   run.box().hang(50'000);
 }
 std::int64_t woken_at(const CaseRun& run, std::int64_t after_us) {
   return run.since_us() >= after_us ? run.injected_us() + after_us : -1;
+}
+std::int64_t reset_after_hanging_at(const CaseRun& run) {
+  return woken_at(run, 1'200'000);
 }
 std::int64_t woken_after_second_at(const CaseRun& run) {
   return woken_at(run, kHang_us);

@@ -60,7 +60,10 @@ void Controller::update_pose(const ControllerInput& input) {
     odometry.weight[leg] = limbs_[leg].target().weight;
   }
   // In the dock the stand holds the body: odom begins there, and no error grows.
-  if (!hangs_) odometry_.reset();
+  if (!hangs_) {
+    odometry_.reset();
+    way_back_.clear();
+  }
   odometry_.update(odometry);
 }
 

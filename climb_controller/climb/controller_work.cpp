@@ -89,12 +89,10 @@ void Controller::work_arming(const ControllerInput& input) {
     return;
   }
   if (!prove_grasps()) return;
-  if (hangs_) {
+  if (hangs_)
     planner_.find_turn(robot_now(input));
-  } else {
+  else
     planner_.remember_dock(robot_now(input));
-    way_back_.clear();
-  }
   hangs_ = true;
   take(E::kArmed);
 }

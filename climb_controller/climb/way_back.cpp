@@ -66,7 +66,8 @@ void WayBack::look(const LadderView& seen) {
   for (const Known& known : known_) show(known);
   const std::size_t num_seen = std::min(seen.rungs.size(), kMaxSeen);
   for (std::size_t i = 0; i < num_seen; ++i) {
-    if (is_known(seen.rungs[i])) continue;
+    const Eigen::Vector3d middle_m = 0.5 * (seen.rungs[i].end0_m + seen.rungs[i].end1_m);
+    if (find(middle_m - drift_m_) != nullptr) continue;
     const int index = static_cast<int>(rungs_.size());
     rungs_.push_back(seen.rungs[i]);
     for (const StretchView& stretch : seen.stretches) {
@@ -82,13 +83,6 @@ WayBack::Known* WayBack::find(const Eigen::Vector3d& point_m) {
     return off_line_m(point_m, each.any_m(), each.axis).norm() <= params_.same_rung_m;
   });
   return known == known_.end() ? nullptr : &*known;
-}
-
-bool WayBack::is_known(const RungView& seen) const {
-  const Eigen::Vector3d middle_m = 0.5 * (seen.end0_m + seen.end1_m) - drift_m_;
-  return std::any_of(known_.begin(), known_.end(), [&](const Known& each) {
-    return off_line_m(middle_m, each.any_m(), each.axis).norm() <= params_.same_rung_m;
-  });
 }
 
 void WayBack::show(const Known& known) {

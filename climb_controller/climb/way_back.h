@@ -50,7 +50,6 @@ class WayBack {
     const Eigen::Vector3d& any_m() const { return places_m[0] ? *places_m[0] : *places_m[1]; }
   };
   Known* find(const Eigen::Vector3d& point_m);
-  bool is_known(const RungView& seen) const;
   void show(const Known& known);
 
   ClawParams claw_;

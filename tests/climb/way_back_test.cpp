@@ -125,6 +125,7 @@ TEST_F(WayBackTest, FollowsTheDriftOfOdometry) {
     way_.return_to(kRearLeft, Eigen::Vector3d(0.22, 0.15, 0.3) + drift_m);
     way_.return_to(kRearLeft, Eigen::Vector3d(0.22, 0.15, 0.3) + 10.0 * drift_m);
     way_.return_to(kRearRight, Eigen::Vector3d(0.22, -0.15, 0.3));
+    way_.return_to(kRearLeft, Eigen::Vector3d(0.22, 0.15, kNaN));
   }
   const LadderView view = look();
   ASSERT_EQ(view.rungs.size(), 2U);
