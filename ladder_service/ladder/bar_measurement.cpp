@@ -244,6 +244,7 @@ void BarMeasurement::find_radius(const BarFrame& frame, const Bar& bar, Fit& fit
   fit.out.lost_m = lost_m(frame, {fit.axis, fit.from_m, fit.to_m, bar.eye_m});
   fit.out.radius_m = std::max(0.0, std::sqrt(3.0 * variance_m2) + fit.out.lost_m);
   fit.out.depth = fit.depth;
+  fit.out.range_m = std::sqrt((fit.axis.origin_m - bar.eye_m).squaredNorm());
   fit.out.end0_m = fit.axis.at(fit.from_m);
   fit.out.end1_m = fit.axis.at(fit.to_m);
 }

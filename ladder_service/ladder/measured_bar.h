@@ -21,6 +21,7 @@ struct MeasuredBar {
   Eigen::Vector3d end0_m = Eigen::Vector3d::Zero();  ///< visible front, then axis (push_back)
   Eigen::Vector3d end1_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d depth = Eigen::Vector3d::UnitX();  ///< unit, from the front towards the axis
+  double range_m = 0.0;                              ///< from the heads that saw it
   double weight = 0.0;                               ///< points
   double radius_m = 0.0;                             ///< half the height
   double front_m = 0.0;  ///< from the visible front to the axis, once pushed back

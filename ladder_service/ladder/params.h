@@ -110,8 +110,7 @@ struct MeasureParams {
                                        ///< less of it than flying_step_m stays (own)
   double edge_gained_px = 0.25;        ///< ... gained before nothing: half of it suffices (own)
   double radius_alike = 0.4;           ///< rungs whose radii differ by a smaller share are pooled
-  bool square_rungs = false;           ///< rungs may be square: rung_profile.h decides. Off: from
-                                       ///< the dock two of 37 round ladders looked so (run)
+  bool square_rungs = true;            ///< rungs may be square: rung_profile.h decides
   double head_min_weight = 10.0;       ///< a head's covariance counts from here (recipe)
   double head_min_share = 0.8;         ///< ... and such heads must carry this share (recipe)
   double head_linearity = 6.0;         ///< (recipe)
