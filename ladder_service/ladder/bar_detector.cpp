@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ladder/rectangular_bar.h"
+#include "ladder/weighted_median.h"
 
 namespace ladder {
 namespace {
@@ -185,18 +186,10 @@ double BarDetector::rung_radius_m() {
 template <class Counts>
 double BarDetector::median_radius_m(const Counts& counts) {
   radii_.clear();
-  double weight = 0.0;
   for (const MeasuredBar& bar : found_.bars) {
-    if (!counts(bar)) continue;
-    radii_.emplace_back(bar.radius_m, bar.weight);
-    weight += bar.weight;
+    if (counts(bar)) radii_.emplace_back(bar.radius_m, bar.weight);
   }
-  std::sort(radii_.begin(), radii_.end());
-  std::size_t median = 0;
-  for (double below = radii_[0].second; below < 0.5 * weight && median + 1 < radii_.size();) {
-    below += radii_[++median].second;
-  }
-  return radii_[median].first;
+  return weighted_median(radii_);
 }
 
 void BarDetector::join_halves() {

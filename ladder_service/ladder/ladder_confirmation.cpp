@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ladder/weighted_median.h"
+
 namespace ladder {
 
 Spacing fit_spacing(std::vector<double>& heights_m, const LadderTestParams& params) {
@@ -86,6 +88,7 @@ Spacing fit_spacing_beside(const std::vector<double>& heights_m,
 LadderConfirmation::LadderConfirmation(const LadderParams& params) : params_(params) {
   rails_.reserve(2);
   heights_m_.reserve(params.max_tracks);
+  radii_.reserve(params.max_tracks);
   damaged_.reserve(params.max_tracks);
 }
 
@@ -160,7 +163,7 @@ bool LadderConfirmation::tells_height(const BarTrack& track) const {
 
 // Of a thick bar less than half is seen, and the middle of that is no place on its axis.
 double LadderConfirmation::max_spacing_sigma_m() const {
-  constexpr double kOfRadius = 0.12;  // 100 mm rungs: 5.3 of 5.8 mm (tuning seeds)
+  constexpr double kOfRadius = 0.16;  // 100 mm rungs: 6.0 of 7.3 mm (tuning seeds)
   return std::max(params_.test.max_spacing_sigma_m, kOfRadius * radius_m_);
 }
 
@@ -168,13 +171,11 @@ Spacing LadderConfirmation::measure(const std::vector<BarTrack>& tracks) {
   heights_m_.clear();
   damaged_.clear();
   if (rails_.empty()) return {};
-  radius_m_ = 0.0;  // of the heaviest
-  double weight = 0.0;
+  radii_.clear();
   for (const BarTrack& track : tracks) {
-    if (!track.is_proven || track.bar.weight <= weight) continue;
-    weight = track.bar.weight;
-    radius_m_ = track.bar.radius_m;
+    if (track.is_proven) radii_.emplace_back(track.bar.radius_m, track.bar.weight);
   }
+  radius_m_ = weighted_median(radii_);
   const Axis& left = rails_[0].axis;
   for (const BarTrack& track : tracks) {
     if (!track.is_proven) continue;

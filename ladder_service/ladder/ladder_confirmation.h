@@ -3,6 +3,7 @@
 // heights over rung numbers, so missing rungs do no harm.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "ladder/bar_tracker.h"
@@ -53,10 +54,11 @@ class LadderConfirmation {
   LadderParams params_;
   LadderState state_ = LadderState::kUnknown;
   Spacing spacing_;
-  double radius_m_ = 0.0;  ///< of the rung that was seen best
+  double radius_m_ = 0.0;  ///< of its rungs
   std::vector<MeasuredRail> rails_;
   std::vector<double> heights_m_;
   std::vector<DamagedHeight> damaged_;
+  std::vector<std::pair<double, double>> radii_;  ///< with their weights
   int num_rail_frames_ = 0;
 };
 

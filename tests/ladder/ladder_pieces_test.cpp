@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The small parts of the ladder search against other ways to get the same.
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -14,6 +15,7 @@
 #include "ladder/measured_bar.h"
 #include "ladder/moment_sum.h"
 #include "ladder/principal_axis.h"
+#include "ladder/weighted_median.h"
 
 namespace {
 
@@ -197,7 +199,7 @@ TEST(LadderConfirmation, LeavesOutARungThatTheViewCuts) {
   std::vector<ladder::BarTrack> tracks;
   int id = 0;
   for (const double z_m : {-0.3, 0.0, 0.3}) tracks.push_back(proven_rung(++id, z_m, 0.05, 4000.0));
-  tracks.push_back(proven_rung(++id, 0.565, 0.02, 1000.0));
+  tracks.push_back(proven_rung(++id, 0.55, 0.02, 1000.0));
   ladder::LadderConfirmation confirmation{ladder::LadderParams{}};
   EXPECT_EQ(confirmation.update(found, tracks), ladder::LadderState::kConfirmed);
   EXPECT_NEAR(confirmation.spacing().spacing_m, 0.30, 1e-9);
@@ -205,6 +207,27 @@ TEST(LadderConfirmation, LeavesOutARungThatTheViewCuts) {
   tracks.back().bar.radius_m = 0.05;
   confirmation.reset();
   EXPECT_NE(confirmation.update(found, tracks), ladder::LadderState::kConfirmed);
+}
+
+// The rung that most is seen of may be the one that the view cuts: the others tell how thick rungs
+// are, and a ladder of three is one.
+TEST(LadderConfirmation, TheHeaviestRungDoesNotTellTheRadius) {
+  std::vector<ladder::BarTrack> tracks;
+  tracks.push_back(proven_rung(1, -0.29, 0.025, 1500.0));
+  for (const int i : {0, 1}) tracks.push_back(proven_rung(2 + i, 0.3 * i, 0.046, 1000.0));
+  ladder::LadderConfirmation confirmation{ladder::LadderParams{}};
+  EXPECT_EQ(confirmation.update(rails_of_a_ladder(), tracks), ladder::LadderState::kConfirmed);
+}
+
+// Half of the weight decides, the lower one of two equals; nothing has the median 0.
+TEST(WeightedMedian, IsWhereHalfOfTheWeightIsReached) {
+  using Values = std::vector<std::pair<double, double>>;
+  const auto median = [](Values values) { return ladder::weighted_median(values); };
+  EXPECT_EQ(median({}), 0.0);
+  EXPECT_EQ(median({{3.0, 0.0}}), 3.0);
+  EXPECT_EQ(median({{2.0, 1.0}, {1.0, 1.0}}), 1.0);
+  EXPECT_EQ(median({{9.0, 3.0}, {1.0, 1.0}, {2.0, 1.0}}), 9.0);
+  EXPECT_EQ(median({{9.0, 1.5}, {1.0, 1.0}, {2.0, 1.0}}), 2.0);
 }
 
 // Only nodes off every plane with enough points are taken, in order of height, the heaviest first

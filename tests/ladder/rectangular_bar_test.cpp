@@ -80,6 +80,7 @@ std::vector<MeasuredBar> rungs(bool square, double error, base::Rng& rng) {
   for (int i = -2; i < 3; ++i) {
     MeasuredBar bar;
     bar.depth = Eigen::Vector3d(1.0, 0.0, 0.3 * i + 0.1).normalized();
+    bar.range_m = 1.0;
     bar.weight = 50.0;
     bar.seen.set();
     bar.radius_m = 0.014 * (square ? square_height(bar.depth.z()) : 1.0);
@@ -108,7 +109,8 @@ TEST(RungProfile, TellsSquareFromRound) {
   }
 }
 
-// Two rungs, rungs on one level, and what is no number say nothing; a reset forgets.
+// Two rungs, rungs on one level, thick or near ones and what is no number say nothing; a reset
+// forgets.
 TEST(RungProfile, RoundUntilShown) {
   base::Rng rng(1);
   const std::vector<MeasuredBar> square = rungs(true, 0.0, rng);
@@ -120,6 +122,11 @@ TEST(RungProfile, RoundUntilShown) {
   MeasuredBar none = square[0];
   none.radius_m = std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 10; ++i) profile.learn({none, none, none, none}, up);
+  std::vector<MeasuredBar> thick = square, near = square;
+  for (MeasuredBar& bar : thick) bar.is_wide = true;
+  near[1].range_m = 0.4;
+  for (int i = 0; i < 10; ++i) profile.learn(thick, up);
+  for (int i = 0; i < 10; ++i) profile.learn(near, up);
   EXPECT_FALSE(profile.is_square());
   for (int i = 0; i < 10; ++i) profile.learn(square, up);
   EXPECT_TRUE(profile.is_square());
