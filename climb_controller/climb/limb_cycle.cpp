@@ -122,7 +122,7 @@ void LimbCycle::enter(LimbState from) {
           foot_m + motion_.retract_m * kinematics_.retract_direction(leg_, target_.angles_rad),
           motion_.retract_m_s);
     case LimbState::kTransit:
-      if (goal_.is_beyond) return go_past();
+      if (goal_.is_beyond || comes_from_above(foot_m)) return go_past();
       return move_foot(aimed_m(goal_.pregrasp_m), motion_.transit_m_s);
     case LimbState::kPregrasp:
       if (parks_ || from == LimbState::kLoaded) return stand_free();

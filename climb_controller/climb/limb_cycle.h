@@ -150,6 +150,7 @@ class LimbCycle {
   void pull(const LimbInput& input, bool arrived);
   double pull_slip_m(const LimbInput& input) const;  ///< of the foot, back from the ladder
   void finish_pull(const LimbInput& input);
+  bool comes_from_above(const Eigen::Vector3d& foot_m) const;
   void go_past();
   void return_home(const LimbInput& input, bool arrived);
   void keep_budget();

@@ -159,9 +159,16 @@ void LimbCycle::stand_free() {
   move_joints(target_.angles_rad, 0.0);
 }
 
+bool LimbCycle::comes_from_above(const Eigen::Vector3d& foot_m) const {
+  return foot_m.x() > goal_.pregrasp_m.x() + motion_.retract_m;
+}
+
+// Out before the rung that is passed; or before the rung it goes to, since on a straight way down
+// the open jaw would strike it (run: with 118 N).
 void LimbCycle::go_past() {
   const Eigen::Vector3d foot_m = kinematics_.foot_m(leg_, target_.angles_rad);
-  way_past_m_ = 0.5 * (foot_m + aimed_m(goal_.pregrasp_m));
+  const Eigen::Vector3d end_m = aimed_m(goal_.pregrasp_m);
+  way_past_m_ = goal_.is_beyond ? Eigen::Vector3d(0.5 * (foot_m + end_m)) : end_m;
   way_past_m_->z() += motion_.clear_m;
   stage_ = Stage::kPast;
   move_foot(*way_past_m_, motion_.transit_m_s);

@@ -175,6 +175,30 @@ TEST_F(WayDownTest, ComesDownByWhatItHasHeld) {
   EXPECT_TRUE(reach(S::kDisarmed, 60.0)) << where();
 }
 
+// An open jaw reaches 45 mm out and 60 mm down: a claw does not come straight down onto its rung
+// but from before it.
+TEST_F(WayDownTest, ComesToARungFromBefore) {
+  constexpr double kLeast_m = 0.04, kMost_m = 0.08;  // above it: there the jaw would strike
+  const LegKinematics kinematics{params().climb.robot};
+  order(Order::kClimbDown);
+  double least_out_m = 1.0;
+  for (int i = 0; i < 40'000 && output_.state != S::kHold; ++i) {
+    cycle();
+    for (const Leg leg : kLegs) {
+      if (output_.limbs[leg] != LimbState::kTransit) continue;
+      const Eigen::Vector3d foot_m =
+          output_.pose.T_odom_body() * kinematics.foot_m(leg, stand_.measured_rad(leg));
+      for (const RungView& rung : stand_.rungs) {
+        const double above_m = foot_m.z() - rung.end0_m.z();
+        if (above_m < kLeast_m || above_m > kMost_m) continue;
+        least_out_m = std::min(least_out_m, rung.end0_m.x() - foot_m.x());
+      }
+    }
+  }
+  EXPECT_TRUE(output_.at_dock) << where();
+  EXPECT_GT(least_out_m, 0.07);
+}
+
 // A rung that broke meanwhile is found out by the claw: all four hold in the end, and it is told.
 TEST_F(WayDownTest, ARungThatBrokeMeanwhileIsFoundOut) {
   stand_.break_rung(5);
