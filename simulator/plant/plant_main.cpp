@@ -58,7 +58,8 @@ void parse(int argc, char** argv, Arguments& arguments) {
       ->allow_extra_args(false);
   app.add_option("--truth", arguments.truth_url, "publish LADDER_TRUTH on this LCM provider");
   app.add_option("--rungs-from-truth", arguments.rungs_url,
-                 "publish LADDER_RUNGS and LADDER_IMU on this LCM provider");
+                 "publish LADDER_RUNGS and LADDER_IMU on this LCM provider, the rungs as seen from "
+                 "where LADDER_POSE says the body is");
   app.add_option("--seconds", arguments.seconds, "stop after this time");
   app.add_option("--undock_s", arguments.undock_s, "release the dock at this time");
   app.add_option("--print_period_s", arguments.print_period_s, "0: print nothing");
@@ -106,7 +107,9 @@ class RunningPlant {
         player_(faults_of(arguments), bus_),
         odom_origin_m_(plant_.T_world_body().translation()) {
     if (!arguments.truth_url.empty()) truth_bus_.emplace(arguments.truth_url);
-    if (!arguments.rungs_url.empty()) rungs_bus_.emplace(arguments.rungs_url);
+    if (arguments.rungs_url.empty()) return;
+    rungs_bus_.emplace(arguments.rungs_url);
+    poses_ = &rungs_bus_->newest(runtime::channels::kPose);
   }
 
   void run() {
@@ -151,10 +154,23 @@ class RunningPlant {
     if (now_us >= rungs_due_us_) {
       rungs_due_us_ = now_us + kRungsPeriod_us;
       ladder_msgs::ladder_t message =
-          simulator::true_rungs(plant_.world(), odom_origin_m_, simulator::utime_us());
+          simulator::true_rungs(plant_.world(), T_odom_world(), simulator::utime_us());
       message.seq = message.topology_seq = rungs_seq_++;
       rungs_bus_->publish(runtime::channels::kRungs, message);
     }
+  }
+
+  /// Rungs are seen from the body: where odometry has lost its way, they come along. Before a pose
+  /// is told, odom begins where the body began.
+  Eigen::Isometry3d T_odom_world() {
+    rungs_bus_->drain();
+    if (const ladder_msgs::pose_t* pose = poses_->take(0)) {
+      T_odom_body_.emplace(Eigen::Translation3d(Eigen::Vector3d(pose->p_odom_body_m)) *
+                           Eigen::Quaterniond(pose->q_odom_body[0], pose->q_odom_body[1],
+                                              pose->q_odom_body[2], pose->q_odom_body[3]));
+    }
+    if (T_odom_body_) return *T_odom_body_ * plant_.T_world_body().inverse();
+    return Eigen::Isometry3d(Eigen::Translation3d(-odom_origin_m_));
   }
 
   void print(std::int64_t now_us) {
@@ -177,6 +193,8 @@ class RunningPlant {
   Eigen::Vector3d odom_origin_m_;
   std::optional<runtime::Bus> truth_bus_;
   std::optional<runtime::Bus> rungs_bus_;
+  runtime::Mailbox<ladder_msgs::pose_t>* poses_ = nullptr;  ///< on rungs_bus_
+  std::optional<Eigen::Isometry3d> T_odom_body_;            ///< as the controller told it last
   std::int64_t print_due_us_ = 0;
   std::int64_t truth_due_us_ = 0;
   std::int64_t truth_seq_ = 0;

@@ -33,7 +33,7 @@ void append(ladder_msgs::ladder_t& m, const ToldRung& rung) {
   ++m.num_rungs;
 }
 
-ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Vector3d& odom_origin_m,
+ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Isometry3d& T_odom_world,
                                  std::int64_t utime_us) {
   ladder_msgs::ladder_t message{};
   message.utime = utime_us;
@@ -46,8 +46,10 @@ ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Vector3d& 
     const bool is_left_first = rung.end0_m.y() > rung.end1_m.y();
     ToldRung told;
     told.id = index;
-    told.left_m = ((is_left_first ? rung.end0_m : rung.end1_m) - odom_origin_m).cast<float>();
-    told.right_m = ((is_left_first ? rung.end1_m : rung.end0_m) - odom_origin_m).cast<float>();
+    const Eigen::Vector3d& left_m = is_left_first ? rung.end0_m : rung.end1_m;
+    const Eigen::Vector3d& right_m = is_left_first ? rung.end1_m : rung.end0_m;
+    told.left_m = (T_odom_world * left_m).cast<float>();
+    told.right_m = (T_odom_world * right_m).cast<float>();
     told.radius_m = static_cast<float>(rung.radius_m);
     append(message, told);
   }

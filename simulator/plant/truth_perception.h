@@ -27,8 +27,8 @@ struct ToldRung {
 void append(ladder_msgs::ladder_t& message, const ToldRung& rung);
 
 /// Every whole rung, trusted, at its true place (1 mm of error told), graspable up to 20 mm from
-/// its ends. Odom as in truth_message(); ids are the rungs' indices.
-ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Vector3d& odom_origin_m,
+/// its ends; ids are the rungs' indices.
+ladder_msgs::ladder_t true_rungs(const RungWorld& world, const Eigen::Isometry3d& T_odom_world,
                                  std::int64_t utime_us);
 
 ladder_msgs::imu_t imu_message(const ImuReading& reading, std::int64_t utime_us);

@@ -54,6 +54,27 @@ TEST(LightClimbs, ClimbsWhatCanBeClimbed) {
   EXPECT_GE(num_sound, 3);
 }
 
+// Ten rungs of a plain ladder in one go, each at its first try.
+TEST(LightClimbs, TenRungsOfAPlainLadder) {
+  ClimbBoxParams params;
+  params.perception.bias_m = params.perception.jitter_m = 0.0;
+  params.plant.rungs = simulator::straight_ladder({.num_rungs = 13});
+  ClimbBox box(params);
+  LightClimbParams climb;
+  climb.has_troubles = false;
+  climb.limit_us = 500'000'000;
+  int num_vain = 0;
+  const auto watch = [&] {
+    for (const climb::LimbState limb : box.report().output.limbs) {
+      num_vain += limb >= climb::LimbState::kRegrasp ? 1 : 0;
+    }
+  };
+  const LightResult result = run_light_climb(climb, box, watch);
+  EXPECT_EQ(result.end, LightEnd::kTop) << result.reason;
+  EXPECT_EQ(result.rungs_climbed, 10);
+  EXPECT_EQ(num_vain, 0);
+}
+
 // A climb as a log: rungs, poses and states at their rates, in order of time.
 TEST(LightClimbs, IsWrittenAsALog) {
   const std::string path = testing::TempDir() + "/light_climb.lcm";
