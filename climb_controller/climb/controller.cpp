@@ -232,6 +232,7 @@ bool Controller::take(ControllerEvent event) {
   if (!next) return false;
   state_ = *next;
   in_state_s_ = looked_s_ = 0.0;
+  forget_other_way();
   if (state_ == S::kHold || state_ == S::kDisarmed) ending_ = Ending::kNone;
   if (state_ == S::kDisarmed || state_ == S::kEstop) {
     following_ = false;

@@ -77,9 +77,14 @@ class Controller {
   bool prove_grasps();
   void refuse_if_late();
   bool begin_shift(const PerLeg<LegAngles>& told_rad, const PerLeg<LegAngles>& measured_rad);
-  bool looks_again(const ControllerInput& input);
-  /// Than the one that plan_ is refused: over a rung, from another place.
-  PlannedStep other_way(const ControllerInput& input);
+  bool looks_again();
+  /// Than the one that plan_ is refused: over a rung, from another place. It takes some cycles.
+  void look_for_other_way(const ControllerInput& input);
+  void forget_other_way() {
+    other_way_.reset();
+    planner_.forget_way();
+  }
+  bool has_other_way() const { return other_way_ && other_way_->ready; }
   bool end_step(const ControllerInput& input);
   bool ends_here(const RobotNow& now) const;
   Retry retry_of(Leg leg, const ControllerInput& input) const;
@@ -160,6 +165,7 @@ class Controller {
   bool unsafe_ = false;  ///< the gate refused our own command
   Eigen::Quaterniond q_odom_body_ = Eigen::Quaterniond::Identity();  ///< last sound one
   PlannedStep plan_;
+  std::optional<PlannedStep> other_way_;  ///< as last looked for, in this stance
   GateVerdict verdict_;
 };
 

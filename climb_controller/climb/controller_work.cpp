@@ -12,7 +12,6 @@ using E = ControllerEvent;
 
 namespace {
 
-constexpr double kBetweenTries_s = 0.1;  ///< of another way: a search takes long
 constexpr FaultFlags kFalls = flag(Fault::kFreeFall) | flag(Fault::kTooFewGrasps);
 
 /// Another look at the ladder may tell otherwise.
@@ -181,14 +180,17 @@ void Controller::work_climbing(const ControllerInput& input) {
   if (!ends) {
     const bool may_shift = num_shifts_ < params_.max_shifts;
     plan_ = planner_.next(upwards_, may_shift, now, ladder_of(input));
-    if (looked_s_ <= 0.0) may_step_over_ = !plan_.ready && other_way(input).ready;
+    look_for_other_way(input);
+    if (!plan_.ready && !other_way_) return;  // not known yet
+    if (looked_s_ <= 0.0) may_step_over_ = has_other_way();
     const bool rises = plan_.at_top && !plan_.move.is_none();
     const bool is_decided = steps_over_ && may_step_over_;  // before the body was shifted for it
-    if (!rises && !is_decided && looks_again(input)) return;
+    if (!rises && !is_decided && looks_again()) return;
     if (!plan_.ready && may_step_over_) {
-      plan_ = other_way(input);
-      steps_over_ = plan_.ready;
+      steps_over_ = has_other_way();
+      plan_ = *other_way_;
     }
+    forget_other_way();
     ends = !plan_.ready && !plan_.at_dock && !rises;
   }
   if (!ends && !plan_.move.is_none()) {
@@ -196,6 +198,8 @@ void Controller::work_climbing(const ControllerInput& input) {
     for (const Leg leg : kLegs) told_rad[leg] = limbs_[leg].target().angles_rad;
     ++num_shifts_;
     ends = !begin_shift(told_rad, now.stance.angles_rad);
+    if (ends && plan_.ready) plan_.refusal = Refusal::kShiftOutOfReach;
+    plan_.ready = plan_.ready && !ends;
   } else if (!ends && plan_.at_dock) {
     ends = true;
   } else if (!ends && is_stance_firm() && limbs_[plan_.leg].begin(plan_.goal)) {
@@ -210,12 +214,15 @@ void Controller::work_climbing(const ControllerInput& input) {
   take(E::kHold);
 }
 
-PlannedStep Controller::other_way(const ControllerInput& input) {
+void Controller::look_for_other_way(const ControllerInput& input) {
+  if (plan_.ready) return forget_other_way();
   const bool may_shift = num_shifts_ < params_.max_shifts;
-  return planner_.over(plan_, may_shift, robot_now(input), ladder_of(input));
+  const std::optional<PlannedStep> found =
+      planner_.over(plan_, may_shift, robot_now(input), ladder_of(input));
+  if (found) other_way_ = found;
 }
 
-bool Controller::looks_again(const ControllerInput& input) {
+bool Controller::looks_again() {
   // What is seen of a rung comes and goes: one that is not good enough just now is looked at for a
   // while; one out of reach, or no ladder at all, is told at once. The top is the top when nothing
   // was seen above it all that time.
@@ -229,8 +236,7 @@ bool Controller::looks_again(const ControllerInput& input) {
   if (looked_s_ < params_.look_again_s) return true;
   // So does what another way needs.
   const bool may_wait = may_step_over_ && looked_s_ < 2.0 * params_.look_again_s;
-  const bool is_time = std::fmod(looked_s_, kBetweenTries_s) < params_.gate.period_s;
-  if (may_wait && !(is_time && other_way(input).ready)) return true;
+  if (may_wait && !has_other_way()) return true;
   looked_s_ = 0.0;
   if (plan_.at_top && !was_top_) {
     plan_.at_top = false;
@@ -270,8 +276,7 @@ bool Controller::end_step(const ControllerInput& input) {
     const PlannedStep once_more =
         planner_.next(upwards_, false, robot_now(input), ladder_of(input));
     if (once_more.refusal != Refusal::kNone) plan_.refusal = once_more.refusal;
-    // The rung that was tried is left out, where the next one is within reach.
-    return is_vain_ && planner_.over(plan_, true, robot_now(input), ladder_of(input)).ready;
+    return is_vain_;  // the rung that was tried is left out, where the next one is within reach
   }
   return made;
 }

@@ -42,8 +42,28 @@ struct Retry {
   Eigen::Vector3d from_m = Eigen::Vector3d::Zero();   ///< odom, where it was held
 };
 
+/// How far the search for another way has come.
+struct WaySearch {
+  enum class Stage : std::uint8_t {
+    kNone,
+    kStep,      ///< the refused step, from other places of the body
+    kFirst,     ///< a step of another leg before it
+    kStepThen,  ///< the refused step, after that
+    kMateThen,  ///< and the next one of its pair
+  };
+  Stage stage = Stage::kNone;
+  int num_places = 0;       ///< of the body, to either side
+  int place = 0;            ///< the next to be looked at, -num_places to num_places
+  PlannedStep best;         ///< until now; as it was refused: none
+  double best_worth = 0.0;  ///< of its place [rad]
+  PlannedStep first;        ///< found in kFirst
+  RobotNow then;            ///< ... and where that leads
+};
+
 class StepPlanner {
  public:
+  static constexpr int kPlacesACycle = 4;  ///< of the body, looked at in a call of over()
+
   explicit StepPlanner(const ClimbParams& params);
 
   /// A free limb to the rung nearest before it; not to one that gave way under it (-1 = none did).
@@ -58,9 +78,12 @@ class StepPlanner {
   PlannedStep next(bool upwards, bool may_shift, const RobotNow& now, const LadderView& ladder);
 
   /// Where next() is refused: from another place of the body (the shift comes first), over a rung
-  /// that is none to grasp, or another leg before it. Else as it was refused.
-  PlannedStep over(const PlannedStep& refused, bool may_shift, const RobotNow& now,
-                   const LadderView& ladder);
+  /// that is none to grasp, or another leg before it. Else as it was refused. Called in each cycle,
+  /// as the robot stands: it looks at a few places a call and answers when it has seen all, after
+  /// 31 calls at most; the call after that begins anew.
+  std::optional<PlannedStep> over(const PlannedStep& refused, bool may_shift, const RobotNow& now,
+                                  const LadderView& ladder);
+  void forget_way() { way_.stage = WaySearch::Stage::kNone; }
 
   /// The rung at this place (odom) does not hold: no step goes there, until the next order.
   void remember_vain(const Eigen::Vector3d& place_m);
@@ -95,6 +118,7 @@ class StepPlanner {
   void made(Leg leg, bool upwards) {
     last_leg_ = leg;
     last_upwards_ = upwards;
+    forget_way();
   }
 
  private:
@@ -103,8 +127,11 @@ class StepPlanner {
   GraspQuery query_of(Leg leg, bool upwards, const RobotNow& now) const;
   BodyMove body_move(double ahead_m, const RobotNow& now) const;
   PlannedStep choose(GraspQuery query, const RobotNow& now, const LadderView& ladder);
-  PlannedStep from_best_place(const PlannedStep& refused, bool may_shift, const RobotNow& now,
-                              const LadderView& ladder);
+  void look_for(WaySearch::Stage stage, const PlannedStep& wanted, bool may_shift);
+  void look_from(double ahead_m, const RobotNow& now, const LadderView& ladder);
+  std::optional<PlannedStep> conclude(const PlannedStep& refused, bool may_shift,
+                                      const RobotNow& now);
+  RobotNow after_step(const PlannedStep& step, const Stance& moved, const RobotNow& now) const;
   BodyMove as_far_as_all_reach(const BodyMove& move, const RobotNow& now) const;
   /// No leg is nearly straight or at a joint's limit, where a small error of place is a large one
   /// of its joints.
@@ -123,6 +150,7 @@ class StepPlanner {
   std::optional<PerLeg<Eigen::Vector3d>> dock_feet_m_;
   std::array<Eigen::Vector3d, 4> vain_m_;  ///< odom
   std::size_t num_vain_ = 0;
+  WaySearch way_;
 };
 
 }  // namespace climb
