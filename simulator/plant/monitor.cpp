@@ -144,8 +144,9 @@ void Monitor::check_limits(std::int64_t now_us, int axis_index, std::int32_t tar
   const double scale = params_.drives[static_cast<std::size_t>(axis_index)].counts_per_rad;
   const double slack_rad = 1.0 / scale;
   const double angle = angle_rad(axis_index, target);
-  // An axis that stands outside is enabled where it stands (I6) and may be led inwards.
-  const double last = angle_rad(axis_index, axis.enabled ? axis.target : axis.measured);
+  // An axis that stands outside is enabled (I6) or held where it stands and may be led inwards.
+  const bool stays = !axis.enabled || is_at_measured(axis, target);
+  const double last = angle_rad(axis_index, stays ? axis.measured : axis.target);
   const double low = std::min(rule.min_rad, last) - slack_rad;
   const double high = std::max(rule.max_rad, last) + slack_rad;
   if (!(angle >= low && angle <= high)) {
@@ -153,7 +154,7 @@ void Monitor::check_limits(std::int64_t now_us, int axis_index, std::int32_t tar
             text_of("target %.5f rad outside %.3f..%.3f", angle, rule.min_rad, rule.max_rad));
   }
   // To where it stands is no jump: what runs away is let go.
-  if (!axis.enabled || is_at_measured(axis, target)) return;
+  if (stays) return;
   const double change = std::fabs(static_cast<double>(target) - axis.target);
   const double allowed =
       rule.max_velocity_rad_s * 1e-6 * static_cast<double>(params_.cycle_us) * scale + 1.0;

@@ -5,9 +5,8 @@
 //  I1 off the dock no confirmed grasp is opened unless the three others are confirmed; at least
 //  three
 //     are when the dock is released. Grasps that the plant took away lately are excused.
-//  I2 every enabled target lies in its limits, or between them and where the axis stood outside
-//  when
-//     it was enabled, and changes by at most v_max T, or to where the axis stands.
+//  I2 every enabled target lies in its limits, or between them and where the axis stands outside,
+//     and changes by at most v_max T, or to where the axis stands.
 //  I3 a jaw is commanded open on a held rung only if the others were confirmed within 50 ms.
 //  I4 after a stop trigger and its reaction time targets only run out: never faster than before,
 //     standing after 150 ms, unless they follow what is measured. Closing jaws are excused.

@@ -183,6 +183,25 @@ TEST(Monitor, LetsAnAxisLeaveWhereItStandsOutside) {
   }
 }
 
+// Led inwards in vain, an axis that stands outside its limits may be held where it stands (I2).
+TEST(Monitor, LetsAnAxisBeHeldWhereItStandsOutside) {
+  for (const double beyond_rad : {0.0, 0.01}) {
+    WatchedBench run;
+    const double stands_rad = run.bench.plant.drive(1).measured_rad();
+    run.watch();
+    run.monitor = with_rule(run, 1, {stands_rad - 1.0, stands_rad - 0.01, 2.5});
+    run.bench.configure();
+    for (const int word : {0x06, 0x07, 0x0F, 0x0F}) run.cycles(1, word);
+    run.bench.plant.drive(1).motor().stuck = true;
+    run.bench.goal_rad[1] -= 0.02;
+    run.cycles(6);
+    ASSERT_THAT(run.broken(), IsEmpty()) << run.first();
+    run.bench.goal_rad[1] = run.bench.target_rad[1] = stands_rad + beyond_rad;
+    run.cycles(1);
+    EXPECT_EQ(run.broken().count(2), beyond_rad > 0.0 ? 1U : 0U) << run.first();
+  }
+}
+
 // To where the axis stands is no jump, as far elsewhere is one (I2).
 TEST(Monitor, LetsATargetGoToWhereTheAxisStands) {
   for (const double part : {1.0, -1.0}) {
