@@ -129,6 +129,7 @@ void read(ConfigTable table, ladder::AlignParams& params) {
   table.read("gain", params.gain);
   table.read("begin_misfit_m", params.begin_misfit_m);
   table.read("end_misfit_m", params.end_misfit_m);
+  table.read("settle_frames", params.settle_frames);
   table.read("max_shift_m", params.max_shift_m);
   table.read("max_turn_rad", params.max_turn_rad);
   table.read("max_range_m", params.max_range_m);

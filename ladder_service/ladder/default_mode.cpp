@@ -46,7 +46,8 @@ void DefaultMode::update(const NodeCloud& cloud, LadderEstimate& estimate,
     const double range_m = std::sqrt((track.bar.middle_m() - body_m).squaredNorm());
     const double side_sigma_m = detector_.alignment().side_sigma_m(range_m);
     const bool is_known = track.wander_m() <= params_.affordance.max_wander_m &&
-                          side_sigma_m <= params_.affordance.max_side_sigma_m;
+                          side_sigma_m <= params_.affordance.max_side_sigma_m &&
+                          detector_.alignment().is_settled();
     surfaces.push_back({track.bar.seen, track.bar.attached, track.bar.tilt_sin,
                         margin_m(track, side_sigma_m), is_known, treads_.has_treads()});
   }

@@ -75,7 +75,7 @@ void HeadAlignment::reset() {
   range_error_ = {};
   wall_ = floor_ = ladder_ = {};
   misfit_m_ = 0.0;
-  num_misfits_ = 0;
+  num_frames_ = num_misfits_ = 0;
   is_misfit_ = false;
 }
 
@@ -120,6 +120,7 @@ double HeadAlignment::Told::say() {
 void HeadAlignment::learn(const NodeCloud& seen, const BarNodes& nodes, const BarSet& bars,
                           const SeenLadder& ladder) {
   if (!params_.enabled) return;
+  num_frames_ = std::min(num_frames_ + 1, params_.settle_frames);
   misfits_m_.clear();
   // One head alone has nothing to agree with.
   if (std::count(seen.head_valid.begin(), seen.head_valid.end(), true) < 2) return;

@@ -38,6 +38,8 @@ class HeadAlignment {
   double misfit_m() const { return misfit_m_; }
   /// The heads are farther apart than well mounted ones.
   bool is_misfit() const { return is_misfit_; }
+  /// Before, the heads may be off by more than their corrections yet say.
+  bool is_settled() const { return !params_.enabled || num_frames_ >= params_.settle_frames; }
   /// How far what stands so far away may be off to the side: all heads may be turned by what none
   /// shows, and the two that see one end be shifted, as much as the others were seen to be wrong.
   double side_sigma_m(double range_m) const;
@@ -95,6 +97,7 @@ class HeadAlignment {
   std::vector<double> thicknesses_;
   std::vector<double> misfits_m_;  ///< of this frame: each head on each surface and bar
   double misfit_m_ = 0.0;
+  int num_frames_ = 0;
   int num_misfits_ = 0;
   bool is_misfit_ = false;
   NodeCloud aligned_;

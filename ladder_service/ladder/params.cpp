@@ -150,6 +150,8 @@ std::string check_align(const AlignParams& p) {
       Relation{in(0.0, p.begin_misfit_m, 1.0), "align.begin_misfit_m must be in 0..1"},
       Relation{in(0.0, p.end_misfit_m, p.begin_misfit_m),
                "align.end_misfit_m must be in 0..begin_misfit_m"},
+      Relation{p.settle_frames >= 0 && p.settle_frames <= 100000,
+               "align.settle_frames must be in 0..100000"},
       Relation{in(0.0, p.max_shift_m, 0.1), "align.max_shift_m must be in 0..0.1"},
       Relation{in(0.0, p.max_turn_rad, 0.1), "align.max_turn_rad must be in 0..0.1"},
       Relation{in(0.0, p.max_range_m, 0.1), "align.max_range_m must be in 0..0.1"},

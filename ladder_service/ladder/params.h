@@ -152,6 +152,7 @@ struct AlignParams {
   double gain = 0.15;             ///< with which the misfit is averaged (own)
   double begin_misfit_m = 0.006;  ///< heads further apart than this are reported ... (own)
   double end_misfit_m = 0.0045;   ///< ... until they are nearer than this (own)
+  int settle_frames = 15;         ///< nothing is offered sooner: corrections come (quality)
   double max_shift_m = 0.03;      ///< corrections end here (own: 3 sigma)
   double max_turn_rad = 0.0524;   ///< 3 deg (own)
   double max_range_m = 0.009;     ///< 3 sigma (own)

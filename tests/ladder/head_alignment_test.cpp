@@ -153,6 +153,30 @@ TEST(HeadAlignment, WrongHeadsWidenTheMargin) {
   EXPECT_GT(bad.side_sigma_m(1.0), 0.005);
 }
 
+// Corrections are in sight after a second of frames; with one head, or without correcting, nothing
+// is waited for longer; a new start waits again.
+TEST(HeadAlignment, SettlesInASecond) {
+  LadderParams params;
+  HeadAlignment alignment{params};
+  after(params.align.settle_frames - 1, two_wrong(0.01, 0.0175), alignment);
+  EXPECT_FALSE(alignment.is_settled());
+  const double almost_m = disagreement_m(alignment.correct(room(two_wrong(0.01, 0.0175))));
+  EXPECT_LT(almost_m, 0.5 * disagreement_m(room(two_wrong(0.01, 0.0175))));
+  after(1, two_wrong(0.01, 0.0175), alignment);
+  EXPECT_TRUE(alignment.is_settled());
+  alignment.reset();
+  EXPECT_FALSE(alignment.is_settled());
+
+  NodeCloud alone = room(Mounts{});
+  alone.head_valid = {true, false, false, false};
+  for (int i = 0; i < params.align.settle_frames; ++i)
+    alignment.learn(alone, BarNodes{params}, BarSet{});
+  EXPECT_TRUE(alignment.is_settled());
+
+  params.align.enabled = false;
+  EXPECT_TRUE(HeadAlignment{params}.is_settled());
+}
+
 // Corrections never exceed their bounds, whatever the heads say.
 TEST(HeadAlignment, IsBounded) {
   const LadderParams params;

@@ -158,7 +158,7 @@ TEST(LadderScenes, OffersStayClearOfRailsAndDamage) {
     shape.rail_width_m = kind == 3 ? 0.04 : 0.01;
     LadderScene scene(20 + kind);
     scene.add_ladder(shape);
-    const LadderEstimate estimate = run(scene);
+    const LadderEstimate estimate = run(scene, 2 * LadderParams{}.align.settle_frames);
     int num_offered = 0;
     for (const ladder::Interval& interval : estimate.intervals) {
       if (interval.reason != ladder::Reason::kNone) continue;

@@ -161,7 +161,7 @@ struct Counts {
 };
 
 Counts count(const LadderScene& scene) {
-  constexpr int kNumFrames = 10;
+  constexpr int kNumFrames = 20;
   LadderTracker tracker{LadderParams{}};
   Counts counts;
   for (int frame = 0; frame < kNumFrames; ++frame) {

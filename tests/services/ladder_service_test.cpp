@@ -99,8 +99,8 @@ TEST_F(LadderService, NothingToSee) {
   EXPECT_EQ(ladder->num_rungs, 0);
 }
 
-// A ladder is confirmed within a few frames: five trusted rungs 0.3 m apart, two rails, a grasp on
-// each, time and number copied.
+// A ladder is confirmed within a few frames: five trusted rungs 0.3 m apart, two rails, time and
+// number copied; after a second of frames there is a grasp on each.
 TEST_F(LadderService, LadderIsConfirmed) {
   const ladder_t* ladder = nullptr;
   for (int seq = 0; seq < 8; ++seq) ladder = send(ladder_topology(seq));
@@ -111,13 +111,15 @@ TEST_F(LadderService, LadderIsConfirmed) {
   EXPECT_NEAR(ladder->spacing_m, 0.3F, 0.01F);
   EXPECT_EQ(ladder->num_rails, 2);
   ASSERT_EQ(ladder->num_rungs, 5);
-  EXPECT_EQ(ladder->num_grasps, 5);
+  EXPECT_EQ(ladder->num_grasps, 0) << "heads may prove to be badly mounted yet";
   for (int i = 0; i < ladder->num_rungs; ++i) {
     EXPECT_EQ(ladder->rung_state[i], ladder_t::RUNG_TRUSTED);
     EXPECT_NEAR(ladder->rung_z0_m[i], 0.1F + 0.3F * static_cast<float>(i), 0.02F);
     EXPECT_GT(ladder->rung_y0_m[i], ladder->rung_y1_m[i]) << "end 0 is the left one";
     EXPECT_GT(ladder->rung_cov_xx_m2[i], 0.0F);
   }
+  for (int seq = 8; seq < 15; ++seq) ladder = send(ladder_topology(seq));
+  ASSERT_EQ(ladder->num_grasps, 5);
   EXPECT_GT(ladder->grasp_approach_x[0], 0.99F);
 }
 
@@ -125,7 +127,7 @@ TEST_F(LadderService, LadderIsConfirmed) {
 // reason.
 TEST_F(LadderService, IntervalsAreOrderedAndExplained) {
   const ladder_t* ladder = nullptr;
-  for (int seq = 0; seq < 8; ++seq) ladder = send(ladder_topology(seq));
+  for (int seq = 0; seq < 20; ++seq) ladder = send(ladder_topology(seq));
   ASSERT_NE(ladder, nullptr);
   ASSERT_GT(ladder->num_intervals, 0);
   for (int i = 0; i < ladder->num_intervals; ++i) {
