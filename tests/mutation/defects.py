@@ -16,8 +16,8 @@ EDITS = [
      'const double low_rad = DEFECT("gate: no lower limit") ? -1e9 : last_rad < limits.min_rad ? last_rad : limits.min_rad;'),
     (CLIMB + "safety.cpp", "const double high_rad = last_rad > limits.max_rad ? last_rad : limits.max_rad;",
      'const double high_rad = DEFECT("gate: 10 mrad beyond the upper limit") ? limits.max_rad + 0.01 : last_rad > limits.max_rad ? last_rad : limits.max_rad;'),
-    (CLIMB + "safety.cpp", "if (!in(wanted.velocity_rad_s, -max_velocity, max_velocity))",
-     'if (!DEFECT("gate: any velocity") && !in(wanted.velocity_rad_s, -max_velocity, max_velocity))'),
+    (CLIMB + "safety.cpp", "if (!base::within(wanted.velocity_rad_s, -max_velocity, max_velocity))",
+     'if (!DEFECT("gate: any velocity") && !base::within(wanted.velocity_rad_s, -max_velocity, max_velocity))'),
     (CLIMB + "safety.cpp", "const double max_step_rad = limits.max_velocity_rad_s",
      'const double max_step_rad = (DEFECT("gate: twice the step") ? 2.0 : 1.0) * limits.max_velocity_rad_s'),
     (CLIMB + "safety.cpp", "const bool is_fresh = computed_us <= now_us &&",
@@ -26,8 +26,8 @@ EDITS = [
      '(DEFECT("gate: any torque limit") || wanted.max_torque_Nm <= limits.max_torque_Nm);'),
     (CLIMB + "safety.cpp", "if (verdict.passed()) {", 'if (DEFECT("gate: refused is taken all the same") || verdict.passed()) {'),
     (CLIMB + "safety.cpp", "if (!started_) return", 'if (!DEFECT("gate: passes before the start") && !started_) return'),
-    (CLIMB + "safety.cpp", "if (!in(measured_rad[axis], limits.min_rad - slack_rad",
-     'if (!DEFECT("gate: starts anywhere") && !in(measured_rad[axis], limits.min_rad - slack_rad'),
+    (CLIMB + "safety.cpp", "if (!base::within(measured_rad[axis], limits.min_rad - slack_rad",
+     'if (!DEFECT("gate: starts anywhere") && !base::within(measured_rad[axis], limits.min_rad - slack_rad'),
     # --- which fault does what ---
     (CLIMB + "failsafe.cpp", "const FaultFlags causes = flags & column[reaction];",
      'const FaultFlags causes = flags & column[reaction] & ~(DEFECT("failsafe: servo silent is nothing") ? flag(Fault::kServoSilent) : 0U) &\n'
